@@ -1,0 +1,129 @@
+"""The MAVLink dialect of hostkit, made by the installed pymavlink for C and for Python.
+
+The standard messages are taken out of the definitions that pymavlink ships; only ``TILT_SAMPLE``
+is written here. Nothing that mavgen makes is committed: headers are made when code is generated,
+the Python module when it is first needed.
+"""
+
+import contextlib
+import importlib.util
+import io
+import re
+import sys
+import tempfile
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+from xml.etree import ElementTree
+
+from hostkit.errors import RenderError
+from hostkit.records import GeneratedFile
+
+STANDARD_MESSAGES = ("HEARTBEAT", "ATTITUDE", "STATUSTEXT")
+STANDARD_DEFINITIONS = ("minimal.xml", "standard.xml", "common.xml")
+HEADER_FOLDER = "mavlink"
+DIALECT = "hostkit"
+FRAME_OVERHEAD_BYTES = 12
+"""Header and checksum of an unsigned MAVLink 2 frame."""
+
+
+def definition() -> str:
+    """Return the dialect as one self-contained XML text.
+
+    Raises
+    ------
+    RenderError
+        If the installed pymavlink does not define a message that hostkit sends.
+    """
+    import pymavlink
+
+    folder = Path(pymavlink.__file__).parent / "dialects" / "v20"
+    sources = [ElementTree.parse(folder / name).getroot() for name in STANDARD_DEFINITIONS]
+    own = ElementTree.parse(Path(__file__).with_name("hostkit_messages.xml")).getroot()
+    messages = [_find_message(sources, name) for name in STANDARD_MESSAGES]
+    wanted = {field.get("enum") for m in messages for field in m.iter("field")} - {None}
+    root = ElementTree.Element("mavlink")
+    enums = ElementTree.SubElement(root, "enums")
+    for source in sources:
+        enums.extend(e for e in source.iter("enum") if e.get("name") in wanted)
+    enums.extend(own.iter("enum"))
+    ElementTree.SubElement(root, "messages").extend([*messages, *own.iter("message")])
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _find_message(sources: list[ElementTree.Element], name: str) -> ElementTree.Element:
+    for source in sources:
+        for message in source.iter("message"):
+            if message.get("name") == name:
+                return message
+    raise RenderError(
+        f"pymavlink {version('pymavlink')} defines no message {name}; install pymavlink 2.4.41 or later"
+    )
+
+
+def _mavgen(language: str, output: Path, folder: Path) -> None:
+    """Run mavgen, silently, and make sure that it produced something."""
+    from pymavlink.generator import mavgen, mavparse
+
+    source = folder / f"{DIALECT}.xml"
+    source.write_text(definition(), encoding="utf-8")
+    options = mavgen.Opts(str(output), wire_protocol=mavparse.PROTOCOL_2_0, language=language)
+    options.validate = False
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        mavgen.mavgen(options, [str(source)])
+    if not output.exists():
+        raise RenderError(f"mavgen made nothing for {language}; it said: {said.getvalue()[-300:]}")
+
+
+@lru_cache(maxsize=1)
+def c_headers() -> tuple[GeneratedFile, ...]:
+    """Return the C headers of the dialect, under ``mavlink/``; the build date is taken out."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        output = folder / HEADER_FOLDER
+        _mavgen("C", output, folder)
+        files = [
+            GeneratedFile(
+                path=path.relative_to(folder).as_posix(),
+                content=_without_date(path.read_text(encoding="utf-8")),
+            )
+            for path in sorted(output.rglob("*.h"))
+            if path.name != "testsuite.h"
+        ]
+    return tuple(sorted(files, key=lambda file: file.path))
+
+
+def _without_date(text: str) -> str:
+    text = re.sub(r'(#define MAVLINK_BUILD_DATE) ".*"', r'\1 ""', text)
+    return re.sub(r"\r\n?", "\n", text)
+
+
+@lru_cache(maxsize=1)
+def python_module() -> ModuleType:
+    """Return the Python module of the dialect; making it takes about 0.1 s.
+
+    Raises
+    ------
+    RenderError
+        If mavgen makes nothing.
+    """
+    name = f"{DIALECT}_dialect"
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / f"{name}.py"
+        _mavgen("Python3", output, Path(folder))
+        spec = importlib.util.spec_from_file_location(name, output)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        spec.loader.exec_module(module)
+    return module
+
+
+def payload_bytes(message: str) -> int:
+    """Return the size of a message's payload before trailing zeros are cut."""
+    module = python_module()
+    message_id = getattr(module, f"MAVLINK_MSG_ID_{message}")
+    return int(module.mavlink_map[message_id].unpacker.size)

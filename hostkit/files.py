@@ -1,0 +1,65 @@
+"""Writing a file so that a reader never sees half of it."""
+
+import os
+import tempfile
+from pathlib import Path
+
+from hostkit.errors import HostkitError
+
+
+def write_aside(path: Path, content: bytes | str) -> None:
+    """Write a file under a temporary name beside its place, then rename it.
+
+    Parameters
+    ----------
+    path
+        Where the file goes. Its folder must exist; a file of that name is replaced.
+    content
+        The bytes, or text that is written as UTF-8 with its line ends as they are.
+
+    Raises
+    ------
+    HostkitError
+        If the folder is missing or not writable, or the disk is full. The old file, if there was
+        one, is then untouched and no temporary file is left.
+    """
+    payload = content.encode("utf-8") if isinstance(content, str) else content
+    target = path.resolve()
+    try:
+        temporary = _write_temporary(target, payload)
+    except OSError as error:
+        raise _refusal(path, error) from error
+    try:
+        temporary.replace(target)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise _refusal(path, error) from error
+
+
+def _write_temporary(target: Path, payload: bytes) -> Path:
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".part", dir=target.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(payload)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.chmod(_mode_of(target))
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    return temporary
+
+
+def _mode_of(target: Path) -> int:
+    """Return the permissions a plainly written file would have."""
+    if target.exists():
+        return target.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _refusal(path: Path, error: OSError) -> HostkitError:
+    reason = error.strerror or str(error)
+    return HostkitError(f"{path} cannot be written: {reason}")

@@ -1,0 +1,303 @@
+"""The frozen records that flow from stage to stage."""
+
+import re
+from dataclasses import dataclass, field
+from itertools import permutations, product
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.errors import DesignError
+from hostkit.fixedpoint import Coefficient
+
+Axis = Literal["roll", "pitch"]
+AxisChoice = Literal["roll", "pitch", "both"]
+TiltMethod = Literal["atan2", "arcsin"]
+Objective = Literal["rmse", "mae"]
+
+AXES: Final[dict[AxisChoice, tuple[Axis, ...]]] = {
+    "roll": ("roll",),
+    "pitch": ("pitch",),
+    "both": ("roll", "pitch"),
+}
+TILT_METHODS: Final[tuple[TiltMethod, ...]] = ("atan2", "arcsin")
+OBJECTIVES: Final[tuple[Objective, ...]] = ("rmse", "mae")
+
+RATE_LIMITS_HZ: Final = (0.1, 8000.0)
+"""Slowest and fastest sample rate of a design; 8 kHz is the MPU-6050's own gyroscope rate."""
+
+
+def read_only(array: NDArray[np.generic]) -> None:
+    """Make an array that a record holds unwritable."""
+    array.flags.writeable = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mounting:
+    """A signed axis permutation: which sensor axis, with which sign, is body x, y and z.
+
+    Only the 24 right-handed ones exist; a left-handed one would turn one angle round.
+    """
+
+    source: tuple[int, int, int] = (0, 1, 2)
+    sign: tuple[int, int, int] = (1, 1, 1)
+
+    def __post_init__(self) -> None:
+        """Refuse what is not a rotation."""
+        if sorted(self.source) != [0, 1, 2] or any(s not in (1, -1) for s in self.sign):
+            raise DesignError(f"mounting {self} names an axis twice or has a sign other than +-1")
+        parity = np.linalg.det(np.eye(3)[list(self.source)] * np.asarray(self.sign)[:, None])
+        if parity < 0.0:
+            raise DesignError(
+                f"mounting {self} is left-handed; turn one sign, for example {self._mended()}"
+            )
+
+    def _mended(self) -> str:
+        x, y, z = self.sign
+        return _mounting_text(self.source, (x, y, -z))
+
+    def __str__(self) -> str:
+        return _mounting_text(self.source, self.sign)
+
+    @classmethod
+    def parse(cls, text: str) -> "Mounting":
+        """Read body x, y, z named as signed sensor axes, for example ``+z+x+y``.
+
+        Raises
+        ------
+        DesignError
+            If the text is not three signed axes, or they are not a rotation.
+        """
+        match = re.fullmatch(r"([+-])([xyz])([+-])([xyz])([+-])([xyz])", text)
+        if match is None:
+            raise DesignError(
+                f"mounting {text!r} is not three signed sensor axes, one each for body x, y and z, "
+                "such as +x+y+z or +z+x+y"
+            )
+        signs, axes = match.groups()[0::2], match.groups()[1::2]
+        x, y, z = ("xyz".index(axis) for axis in axes)
+        sx, sy, sz = (1 if sign == "+" else -1 for sign in signs)
+        return cls(source=(x, y, z), sign=(sx, sy, sz))
+
+    @classmethod
+    def all(cls) -> tuple["Mounting", ...]:
+        """Return the 24 mountings."""
+        found = []
+        for source in permutations((0, 1, 2)):
+            for sign in product((1, -1), repeat=3):
+                try:
+                    found.append(cls(source=source, sign=sign))  # type: ignore[arg-type]
+                except DesignError:
+                    continue
+        return tuple(found)
+
+
+def _mounting_text(source: tuple[int, int, int], sign: tuple[int, int, int]) -> str:
+    return "".join(
+        f"{'+' if s > 0 else '-'}{'xyz'[axis]}" for axis, s in zip(source, sign, strict=True)
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorConfig:
+    """How the sensor of a design is set: which part, ranges and low-pass setting."""
+
+    part: str
+    gyro_full_scale_deg_s: int
+    accel_full_scale_g: int
+    low_pass_setting: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One number of a filter, by name and unit (``"1"`` when it has none)."""
+
+    name: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingDigest:
+    """What a design remembers of a recording it was tuned on."""
+
+    name: str
+    sha256: str
+    samples: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TuningRecord:
+    """How a design was found, so that it can be found again.
+
+    `rmse_deg` is the figure on the recordings named here, that is, a training figure.
+    """
+
+    objective: Objective
+    optimiser: str
+    seed: int
+    particles: int
+    iterations: int
+    evaluations: int
+    rmse_deg: float
+    recordings: tuple[RecordingDigest, ...]
+    versions: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterDesign:
+    """A tuned filter: all that code is rendered from."""
+
+    filter: str
+    axes: AxisChoice
+    tilt: TiltMethod
+    mounting: Mounting
+    rate_hz: float
+    sensor: SensorConfig
+    parameters: tuple[Parameter, ...]
+    tuning: TuningRecord | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a rate that no sensor has."""
+        low, high = RATE_LIMITS_HZ
+        if not low <= self.rate_hz <= high:
+            raise DesignError(f"rate_hz = {self.rate_hz} is outside [{low}, {high}] Hz")
+
+    @property
+    def period_s(self) -> float:
+        """Sample period."""
+        return 1.0 / self.rate_hz
+
+    def parameter(self, name: str) -> float:
+        """Return the value of one parameter.
+
+        Raises
+        ------
+        DesignError
+            If the design does not have it.
+        """
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter.value
+        known = ", ".join(p.name for p in self.parameters)
+        raise DesignError(f"the design has no parameter {name!r}; it has: {known}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CordicTable:
+    """Constants of the CORDIC that replaces libm: the same in C, VHDL and Python.
+
+    `angles_raw` are ``round(atan(2**-i) / pi * 2**31)`` half-turn units; `guard_bits` is how far
+    counts are shifted left before the first step.
+    """
+
+    guard_bits: int
+    angles_raw: tuple[int, ...]
+    gain: Coefficient
+
+    @property
+    def steps(self) -> int:
+        """Number of micro-rotations."""
+        return len(self.angles_raw)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixedPointSpec:
+    """A design in integers: all that templates and the integer model know of the filter.
+
+    Attributes
+    ----------
+    rate_gain
+        Half-turn units of angle per count of angular rate and sample.
+    blend
+        1 - eta, the weight of the tilt measured from specific force.
+    gravity_count
+        Accelerometer count of 1 g.
+    error_bound_rad
+        Largest difference to the float model on counts, for the conditions its filter states.
+    """
+
+    filter: str
+    axes: tuple[Axis, ...]
+    tilt: TiltMethod
+    mounting: Mounting
+    rate_gain: Coefficient
+    blend: Coefficient
+    cordic: CordicTable
+    gravity_count: int
+    error_bound_rad: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeneratedFile:
+    """One rendered file: a relative POSIX path and its content."""
+
+    path: str
+    content: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AngleTrace:
+    """What a device said, sample by sample.
+
+    Attributes
+    ----------
+    sequence
+        Sample counter of the device, shape ``(N,)``; a gap is a lost sample.
+    time_us
+        Device time of the sample, shape ``(N,)``.
+    accel_count, gyro_count
+        Raw counts in sensor axes, shape ``(N, 3)``.
+    angle_raw
+        Angles of the filter after the sample, half turns, shape ``(N, A)``, in the design's axes.
+    restarted
+        True where the filter loaded the measured tilt instead of stepping, shape ``(N,)``.
+    """
+
+    sequence: NDArray[np.int64]
+    time_us: NDArray[np.int64]
+    accel_count: NDArray[np.int64]
+    gyro_count: NDArray[np.int64]
+    angle_raw: NDArray[np.int64]
+    restarted: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for array in (self.sequence, self.time_us, self.accel_count, self.gyro_count):
+            read_only(array)
+        read_only(self.angle_raw)
+        read_only(self.restarted)
+
+    def __len__(self) -> int:
+        return len(self.sequence)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkStatistics:
+    """What a link delivered and what it lost."""
+
+    frames: int = 0
+    lost_frames: int = 0
+    bad_bytes: int = 0
+    bad: int = 0
+    unknown: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValidationReport:
+    """A device trace held against the integer and the float model.
+
+    `mismatches` counts samples that differ from the integer model; `rms_rad` and `max_rad` are the
+    residual device minus float model. `reasons` says why the verdict is not ``pass``.
+    """
+
+    samples: int
+    checked: int
+    lost: int
+    mismatches: int
+    rms_rad: float | None
+    max_rad: float | None
+    digest_ok: bool
+    verdict: Literal["pass", "fail", "refused"]
+    reasons: tuple[str, ...] = field(default=())

@@ -1,0 +1,172 @@
+"""What templates see: records whose fields are ready to be placed."""
+
+from dataclasses import dataclass
+
+from hostkit import __version__
+from hostkit.design_file import digest
+from hostkit.errors import DesignError
+from hostkit.filters import FILTERS
+from hostkit.filters.cordic import ROOT_FRACTION_BITS
+from hostkit.fixedpoint import Coefficient
+from hostkit.records import FilterDesign, FixedPointSpec, Mounting
+from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.sensors import SENSORS, mpu6050
+from hostkit.sensors.part import Range, Register, RegisterWrite
+from hostkit.targets import Target
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DesignContext:
+    """The design by name and rate."""
+
+    digest: str
+    digest_bytes: tuple[int, ...]
+    version: str
+    filter: str
+    rate_hz: str
+    period_us: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RangeContext:
+    """A full-scale range and, as C99 hexadecimal text, its counts per rad/s or per m/s^2."""
+
+    setting: int
+    full_scale: int
+    counts_per_si: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorContext:
+    """The sensor: its map, its constants and the register writes of this design."""
+
+    title: str
+    i2c_address: int
+    who_am_i: int
+    registers: tuple[Register, ...]
+    configuration: tuple[RegisterWrite, ...]
+    settle_samples: int
+    gyro_ranges: tuple[RangeContext, ...]
+    accel_ranges: tuple[RangeContext, ...]
+    rad_s_per_count: str
+    device_reset: int = mpu6050.DEVICE_RESET
+    sleep: int = mpu6050.SLEEP
+    clock_pll: int = mpu6050.CLOCK_PLL_GYRO_X
+    signal_path_reset: int = mpu6050.SIGNAL_PATH_RESET_ALL
+    int_latched: int = mpu6050.INT_LATCHED_CLEARED_BY_ANY_READ
+    data_ready: int = mpu6050.DATA_READY
+    burst_bytes: int = mpu6050.BURST_BYTES
+    temperature_counts_per_deg_c: int = mpu6050.TEMPERATURE_COUNTS_PER_DEG_C
+    temperature_offset_deg_c: float = mpu6050.TEMPERATURE_OFFSET_DEG_C
+    temperature_offset_counts: int = round(
+        mpu6050.TEMPERATURE_COUNTS_PER_DEG_C * mpu6050.TEMPERATURE_OFFSET_DEG_C
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MountingContext:
+    """One body axis: the sensor axis it is, and whether it points the other way."""
+
+    name: str
+    source: int
+    source_name: str
+    negative: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderContext:
+    """Everything a template may name."""
+
+    design: DesignContext
+    spec: FixedPointSpec
+    coefficients: tuple[Coefficient, ...]
+    cordic_rom: tuple[int, ...]
+    root_fraction_bits: int
+    mounting: tuple[MountingContext, ...]
+    has_roll: bool
+    has_pitch: bool
+    uses_arcsin: bool
+    sensor: SensorContext
+    link: LinkPlan
+    target: Target
+
+    def banner(self, template: str) -> str:
+        """Return the first comment of a rendered file."""
+        return (
+            f"made by hostkit {self.design.version} from design {self.design.digest}; "
+            f"do not edit; template {template}"
+        )
+
+
+def render_context(design: FilterDesign, target: Target) -> RenderContext:
+    """Lower a design and lay out what templates need.
+
+    Raises
+    ------
+    HostkitError
+        If the design cannot be lowered, or does not fit the target's sensor rate or link.
+    """
+    spec = FILTERS[design.filter].lower(design)
+    return RenderContext(
+        design=_design_context(design),
+        spec=spec,
+        coefficients=(spec.rate_gain, spec.blend),
+        cordic_rom=_padded(spec.cordic.angles_raw),
+        root_fraction_bits=ROOT_FRACTION_BITS,
+        mounting=_mounting_context(design.mounting),
+        has_roll="roll" in spec.axes,
+        has_pitch="pitch" in spec.axes,
+        uses_arcsin=spec.tilt == "arcsin",
+        sensor=_sensor_context(design),
+        link=link_plan(design.rate_hz, target),
+        target=target,
+    )
+
+
+def _design_context(design: FilterDesign) -> DesignContext:
+    name = digest(design)
+    return DesignContext(
+        digest=name,
+        digest_bytes=tuple(bytes.fromhex(name)),
+        version=__version__,
+        filter=design.filter,
+        rate_hz=repr(design.rate_hz),
+        period_us=round(1e6 * design.period_s),
+    )
+
+
+def _padded(table: tuple[int, ...]) -> tuple[int, ...]:
+    """Fill a table with zeros to a power of two, so that no index can leave it."""
+    return table + (0,) * ((1 << (len(table) - 1).bit_length()) - len(table))
+
+
+def _mounting_context(mounting: Mounting) -> tuple[MountingContext, ...]:
+    return tuple(
+        MountingContext(name=name, source=source, source_name="xyz"[source], negative=sign < 0)
+        for name, source, sign in zip("xyz", mounting.source, mounting.sign, strict=True)
+    )
+
+
+def _sensor_context(design: FilterDesign) -> SensorContext:
+    sensor = SENSORS[design.sensor.part]
+    if sensor is not mpu6050.MPU6050:
+        raise DesignError(f"there is no driver for the {sensor.title}; there is one for: mpu6050")
+    return SensorContext(
+        title=sensor.title,
+        i2c_address=sensor.i2c_address,
+        who_am_i=sensor.who_am_i,
+        registers=sensor.registers,
+        configuration=mpu6050.configuration(design.sensor, design.rate_hz),
+        settle_samples=mpu6050.settle_samples(design.sensor, design.rate_hz),
+        gyro_ranges=tuple(_range(r, sensor.gyro_rad_s_per_count(r)) for r in sensor.gyro_ranges),
+        accel_ranges=tuple(_range(r, sensor.accel_m_s2_per_count(r)) for r in sensor.accel_ranges),
+        rad_s_per_count=repr(sensor.rad_s_per_count(design.sensor)),
+    )
+
+
+def _range(full_scale: Range, si_per_count: float) -> RangeContext:
+    return RangeContext(
+        setting=full_scale.setting,
+        full_scale=full_scale.full_scale,
+        counts_per_si=(1.0 / si_per_count).hex(),
+    )

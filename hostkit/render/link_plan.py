@@ -1,0 +1,69 @@
+"""Which message goes out how often, and whether the link can carry it."""
+
+import math
+from dataclasses import dataclass
+
+from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes
+from hostkit.errors import RenderError
+from hostkit.targets import Target
+
+SYSTEM_ID = 1
+COMPONENT_ID = 1
+MAV_TYPE_GENERIC = 0
+MAV_AUTOPILOT_GENERIC = 0
+HEARTBEAT_MS = 1000
+ATTITUDE_MAX_HZ = 50.0
+BITS_PER_BYTE = 10
+"""Start bit, eight data bits, stop bit."""
+USABLE_SHARE = 0.8
+"""The rest is left for events."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkPlan:
+    """The telemetry of a design: identity, message rates, bytes a second."""
+
+    system_id: int
+    component_id: int
+    vehicle_type: int
+    autopilot: int
+    baud: int
+    heartbeat_ms: int
+    attitude_every: int
+    bytes_per_s: float
+
+
+def link_plan(rate_hz: float, target: Target) -> LinkPlan:
+    """Plan the telemetry of a design: every sample, and ATTITUDE at 50 Hz or less.
+
+    Raises
+    ------
+    RenderError
+        If the messages do not fit 80 % of the link.
+    """
+    attitude_every = max(1, math.ceil(rate_hz / ATTITUDE_MAX_HZ))
+    rates_hz = {
+        "TILT_SAMPLE": rate_hz,
+        "ATTITUDE": rate_hz / attitude_every,
+        "HEARTBEAT": 1000.0 / HEARTBEAT_MS,
+    }
+    needed = sum(
+        hz * (payload_bytes(name) + FRAME_OVERHEAD_BYTES) for name, hz in rates_hz.items()
+    )
+    usable = USABLE_SHARE * target.baud / BITS_PER_BYTE
+    if target.baud and needed > usable:
+        fits_hz = rate_hz * usable / needed
+        raise RenderError(
+            f"rate_hz = {rate_hz:g} needs {needed:.0f} bytes/s of telemetry; {target.baud} baud "
+            f"carries {usable:.0f} bytes/s at 80 % use: about {fits_hz:.0f} Hz fit"
+        )
+    return LinkPlan(
+        system_id=SYSTEM_ID,
+        component_id=COMPONENT_ID,
+        vehicle_type=MAV_TYPE_GENERIC,
+        autopilot=MAV_AUTOPILOT_GENERIC,
+        baud=target.baud,
+        heartbeat_ms=HEARTBEAT_MS,
+        attitude_every=attitude_every,
+        bytes_per_s=needed,
+    )

@@ -1,0 +1,139 @@
+"""The InvenSense MPU-6050: registers, ranges, filters and noise, the single source of all of them.
+
+Sources: register map RM-MPU-6000A revision 4.2 and product specification PS-MPU-6000A revision
+3.4. Driver, virtual sensor, simulation and lowering take their numbers from here.
+"""
+
+import math
+
+from hostkit.errors import DesignError
+from hostkit.records import SensorConfig
+from hostkit.sensors.part import LowPass, Noise, Range, Register, RegisterWrite, SensorPart
+from hostkit.units import RAD_PER_DEG, STANDARD_GRAVITY_M_S2
+
+SMPLRT_DIV = Register(name="SMPLRT_DIV", address=0x19)
+CONFIG = Register(name="CONFIG", address=0x1A)
+GYRO_CONFIG = Register(name="GYRO_CONFIG", address=0x1B)
+ACCEL_CONFIG = Register(name="ACCEL_CONFIG", address=0x1C)
+FIFO_EN = Register(name="FIFO_EN", address=0x23)
+INT_PIN_CFG = Register(name="INT_PIN_CFG", address=0x37)
+INT_ENABLE = Register(name="INT_ENABLE", address=0x38)
+INT_STATUS = Register(name="INT_STATUS", address=0x3A)
+ACCEL_XOUT_H = Register(name="ACCEL_XOUT_H", address=0x3B)
+TEMP_OUT_H = Register(name="TEMP_OUT_H", address=0x41)
+GYRO_XOUT_H = Register(name="GYRO_XOUT_H", address=0x43)
+SIGNAL_PATH_RESET = Register(name="SIGNAL_PATH_RESET", address=0x68)
+USER_CTRL = Register(name="USER_CTRL", address=0x6A)
+PWR_MGMT_1 = Register(name="PWR_MGMT_1", address=0x6B, reset_value=0x40)
+PWR_MGMT_2 = Register(name="PWR_MGMT_2", address=0x6C)
+WHO_AM_I = Register(name="WHO_AM_I", address=0x75, reset_value=0x68)
+
+DEVICE_RESET = 0x80
+SLEEP = 0x40
+CLOCK_PLL_GYRO_X = 0x01
+SIGNAL_PATH_RESET_ALL = 0x07
+INT_LATCHED_CLEARED_BY_ANY_READ = 0x30
+DATA_READY = 0x01
+FULL_SCALE_SHIFT = 3
+BURST_BYTES = 14
+
+TEMPERATURE_COUNTS_PER_DEG_C = 340
+TEMPERATURE_OFFSET_DEG_C = 36.53
+
+MPU6050 = SensorPart(
+    name="mpu6050",
+    title="MPU-6050",
+    i2c_address=0x68,
+    who_am_i=0x68,
+    gyro_ranges=tuple(Range(setting=i, full_scale=250 << i) for i in range(4)),
+    accel_ranges=tuple(Range(setting=i, full_scale=2 << i) for i in range(4)),
+    low_passes=tuple(
+        LowPass(
+            setting=setting,
+            accel_bandwidth_hz=accel_hz,
+            accel_delay_s=accel_ms * 1e-3,
+            gyro_bandwidth_hz=gyro_hz,
+            gyro_delay_s=gyro_ms * 1e-3,
+            gyro_rate_hz=8000.0 if setting == 0 else 1000.0,
+        )
+        for setting, accel_hz, accel_ms, gyro_hz, gyro_ms in (
+            (0, 260.0, 0.0, 256.0, 0.98),
+            (1, 184.0, 2.0, 188.0, 1.9),
+            (2, 94.0, 3.0, 98.0, 2.8),
+            (3, 44.0, 4.9, 42.0, 4.8),
+            (4, 21.0, 8.5, 20.0, 8.3),
+            (5, 10.0, 13.8, 10.0, 13.4),
+            (6, 5.0, 19.0, 5.0, 18.6),
+        )
+    ),
+    noise=Noise(
+        gyro_noise_density_rad_s_rthz=0.005 * RAD_PER_DEG,
+        accel_noise_density_m_s2_rthz=400e-6 * STANDARD_GRAVITY_M_S2,
+    ),
+    registers=(
+        SMPLRT_DIV,
+        CONFIG,
+        GYRO_CONFIG,
+        ACCEL_CONFIG,
+        FIFO_EN,
+        INT_PIN_CFG,
+        INT_ENABLE,
+        INT_STATUS,
+        ACCEL_XOUT_H,
+        TEMP_OUT_H,
+        GYRO_XOUT_H,
+        SIGNAL_PATH_RESET,
+        USER_CTRL,
+        PWR_MGMT_1,
+        PWR_MGMT_2,
+        WHO_AM_I,
+    ),
+    sample_base_rate_hz=1000.0,
+    sample_divider_max=255,
+)
+
+
+def configuration(config: SensorConfig, rate_hz: float) -> tuple[RegisterWrite, ...]:
+    """Return what the driver writes, in order, between wake-up and enabling data-ready.
+
+    Everything that changes the weight of a count stands before the interrupt is enabled: a sample
+    taken before would be scaled by the wrong range.
+
+    Raises
+    ------
+    DesignError
+        If a range, the low-pass setting or the rate does not exist on the part, or if the rate
+        needs the filter's 1 kHz clock and the low-pass setting 0 runs at 8 kHz.
+    """
+    gyro = MPU6050.gyro_range(config)
+    accel = MPU6050.accel_range(config)
+    low_pass = MPU6050.low_pass(config)
+    ticks_per_base = round(low_pass.gyro_rate_hz / MPU6050.sample_base_rate_hz)
+    divider = (MPU6050.sample_divider(rate_hz) + 1) * ticks_per_base - 1
+    if divider > MPU6050.sample_divider_max:
+        slowest = low_pass.gyro_rate_hz / (MPU6050.sample_divider_max + 1)
+        raise DesignError(
+            f"rate_hz = {rate_hz:g} is too slow for low_pass_setting 0, which runs at 8 kHz and "
+            f"goes down to {slowest:g} Hz; take a setting from 1 to 6"
+        )
+    return (
+        RegisterWrite(register=INT_ENABLE, value=0),
+        RegisterWrite(register=USER_CTRL, value=0),
+        RegisterWrite(register=FIFO_EN, value=0),
+        RegisterWrite(register=CONFIG, value=low_pass.setting),
+        RegisterWrite(register=SMPLRT_DIV, value=divider),
+        RegisterWrite(register=GYRO_CONFIG, value=gyro.setting << FULL_SCALE_SHIFT),
+        RegisterWrite(register=ACCEL_CONFIG, value=accel.setting << FULL_SCALE_SHIFT),
+        RegisterWrite(register=INT_PIN_CFG, value=INT_LATCHED_CLEARED_BY_ANY_READ),
+    )
+
+
+def settle_samples(config: SensorConfig, rate_hz: float) -> int:
+    """Return how many samples after start-up still see the filter's old state.
+
+    One sample that may have been taken before the interrupt was enabled, and three group delays of
+    the low-pass filter.
+    """
+    low_pass = MPU6050.low_pass(config)
+    delay_s = max(low_pass.accel_delay_s, low_pass.gyro_delay_s)
+    return 1 + math.ceil(3.0 * delay_s * rate_hz)

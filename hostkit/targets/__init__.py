@@ -1,0 +1,9 @@
+"""Targets: one module each, and their registry."""
+
+from hostkit.registry import Registry
+from hostkit.targets.atmega328p import ATMEGA328P
+from hostkit.targets.host import HOST
+from hostkit.targets.spartan3adsp import SPARTAN3ADSP
+from hostkit.targets.target import Target
+
+TARGETS: Registry[Target] = Registry("target", (HOST, ATMEGA328P, SPARTAN3ADSP))

@@ -1,0 +1,15 @@
+"""The ATmega328P at 16 MHz, as on an Arduino Uno or Nano.
+
+A 16 MHz AVR makes 250, 500 and 1000 kbit/s exactly and 115.2 kbit/s 2.1 % too fast, hence 500.
+"""
+
+from hostkit.targets.target import Target
+
+ATMEGA328P = Target(
+    name="atmega328p",
+    title="ATmega328P at 16 MHz (Arduino Uno, Nano)",
+    kind="mcu",
+    folders=("common", "virtual_mpu6050", "atmega328p"),
+    clock_hz=16_000_000,
+    baud=500_000,
+)

@@ -1,0 +1,29 @@
+"""What a target is: where its code comes from and what its link and clock can do."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """A place where generated code runs.
+
+    Attributes
+    ----------
+    kind
+        ``mcu`` for C with a MAVLink telemetry link, ``fpga`` for VHDL.
+    folders
+        Template folders below ``firmware_templates`` or ``hdl_templates``, next to the folder of
+        the filter, whose files make up the output.
+    clock_hz
+        Clock of the processor, or 0 where there is none to set.
+    baud
+        Rate of the telemetry link, bit/s.
+    """
+
+    name: str
+    title: str
+    kind: Literal["mcu", "fpga"]
+    folders: tuple[str, ...]
+    clock_hz: int = 0
+    baud: int = 0
