@@ -1,0 +1,58 @@
+"""Reading what the command line names: recordings with their sanity card, and designs."""
+
+from pathlib import Path
+
+import click
+
+from hostkit.design_file import digest, edited_by_hand, load_design
+from hostkit.records import FilterDesign
+from hostkit.recordings import Recording, check, load
+
+RECORDINGS = click.argument(
+    "recording_files",
+    nargs=-1,
+    required=True,
+    metavar="REC...",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+)
+DESIGN = click.argument(
+    "design_file",
+    metavar="DESIGN",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+)
+JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+
+
+def say(message: str) -> None:
+    """Print progress or a remark, on standard error."""
+    click.echo(message, err=True)
+
+
+def read_recording(path: Path) -> Recording:
+    """Load a recording and show its sanity card if there is anything to say.
+
+    Raises
+    ------
+    RecordingError
+        If the recording has a hard fault.
+    """
+    recording = load(path)
+    card = check(recording)
+    if card.warnings:
+        for line in card.lines():
+            say(line)
+    return recording
+
+
+def read_design(path: Path) -> FilterDesign:
+    """Load a design and say so if it was edited since it was written.
+
+    Raises
+    ------
+    DesignError
+        If the file is not a design.
+    """
+    design = load_design(path)
+    if edited_by_hand(path):
+        say(f"{path} was edited since it was written; it is now design {digest(design)}")
+    return design

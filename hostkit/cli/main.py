@@ -1,0 +1,113 @@
+"""The entry point: finds the subcommand, reads the project file, turns errors into one line."""
+
+import importlib
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hostkit import __version__
+from hostkit.errors import HostkitError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+COMMANDS = {
+    "demo": "The whole loop without hardware, ending in a report.",
+    "simulate": "Make a recording from a motion profile.",
+    "tune": "Find the filter for recordings; write a design.",
+    "evaluate": "Score a design on recordings.",
+    "generate": "Render a design to C or VHDL.",
+    "build": "Compile or analyse generated code.",
+    "emulate": "Run the generated code on an emulated board or simulator.",
+    "monitor": "Validate a live device against the models.",
+    "doctor": "Show what is installed and how to get what is missing.",
+}
+PROJECT_FILE = Path("hostkit.toml")
+INTERRUPTED = 130
+
+
+class Commands(click.Group):
+    """Subcommands that are imported only when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names in the order in which one uses them."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import one subcommand."""
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"hostkit.cli.{cmd_name}")
+        command: click.Command = getattr(module, cmd_name)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the subcommands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="hostkit")
+@click.pass_context
+def cli(ctx: click.Context) -> None:
+    """Tune a tilt filter, render it to C and VHDL, prove the device equals the model.
+
+    Defaults for a project stand in hostkit.toml, a table per command; HOSTKIT_COMMAND_OPTION in
+    the environment wins over the file, the command line over both.
+    """
+    ctx.default_map = _project_defaults()
+
+
+def _project_defaults() -> dict[str, Any]:
+    if not PROJECT_FILE.is_file():
+        return {}
+    try:
+        defaults = tomllib.loads(PROJECT_FILE.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise HostkitError(f"{PROJECT_FILE} cannot be read: {error}") from error
+    for name, table in defaults.items():
+        if name not in COMMANDS or not isinstance(table, dict):
+            raise HostkitError(
+                f"{PROJECT_FILE} has {name!r}; it may have one table per command: "
+                + ", ".join(COMMANDS)
+            )
+    return defaults
+
+
+def main() -> None:
+    """Run the command line and leave with its documented exit code."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command line and return its exit code.
+
+    0 ok, 1 failure, 2 wrong use, 3 validation failed, 4 device or port, 5 a tool is missing.
+    """
+    try:
+        cli.main(
+            args=arguments,
+            prog_name="hostkit",
+            auto_envvar_prefix="HOSTKIT",
+            standalone_mode=False,
+        )
+    except HostkitError as error:
+        click.echo(f"hostkit: {error}", err=True)
+        return error.exit_code
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("hostkit: interrupted", err=True)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read our output has gone; nothing is left to say, and nobody to say it to.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    return 0

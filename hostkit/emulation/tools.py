@@ -1,0 +1,123 @@
+"""The programs hostkit calls: how to find them, their version, and how to get them."""
+
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from hostkit.errors import ToolMissingError
+
+NODE_MODULES = Path(__file__).parent / "avr8js" / "node_modules"
+VERSION_TIMEOUT_S = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tool:
+    """A program or package hostkit calls at run time.
+
+    `command` prints its version; a tool without one is the npm package of its name.
+    """
+
+    name: str
+    purpose: str
+    hint: str
+    command: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolState:
+    """Whether a tool is there, and which version."""
+
+    tool: Tool
+    found: bool
+    version: str | None
+
+
+def _apt(packages: str) -> str:
+    return f"sudo apt-get install {packages}"
+
+
+TOOLS = (
+    Tool(name="gcc", purpose="the host target", hint=_apt("gcc"), command=("gcc", "--version")),
+    Tool(name="make", purpose="building C", hint=_apt("make"), command=("make", "--version")),
+    Tool(
+        name="avr-gcc",
+        purpose="the atmega328p target",
+        hint=_apt("gcc-avr binutils-avr avr-libc"),
+        command=("avr-gcc", "--version"),
+    ),
+    Tool(
+        name="node",
+        purpose="emulating the atmega328p",
+        hint=_apt("nodejs npm"),
+        command=("node", "--version"),
+    ),
+    Tool(
+        name="avr8js",
+        purpose="emulating the atmega328p",
+        hint=f"npm install --prefix {NODE_MODULES.parent}",
+    ),
+    Tool(
+        name="clang",
+        purpose="the virtual sensor of the emulated atmega328p",
+        hint=_apt("clang"),
+        command=("clang", "--version"),
+    ),
+    Tool(
+        name="wasm-ld",
+        purpose="the virtual sensor of the emulated atmega328p",
+        hint=_apt("lld"),
+        command=("wasm-ld", "--version"),
+    ),
+    Tool(
+        name="ghdl",
+        purpose="the spartan3adsp target",
+        hint=_apt("ghdl"),
+        command=("ghdl", "--version"),
+    ),
+)
+
+
+def find(tool: Tool) -> ToolState:
+    """Look for a tool and ask it for its version."""
+    version = _program_version(tool) if tool.command else _package_version(tool.name)
+    return ToolState(tool=tool, found=version is not None, version=version)
+
+
+def require(*names: str) -> None:
+    """Make sure that tools are there.
+
+    Raises
+    ------
+    ToolMissingError
+        Naming the first that is not, what it is for, and how to install it.
+    """
+    for tool in TOOLS:
+        if tool.name not in names:
+            continue
+        present = shutil.which(tool.command[0]) if tool.command else _package_version(tool.name)
+        if not present:
+            raise ToolMissingError(
+                f"{tool.name} is not installed; {tool.purpose} needs it: `make setup` in a "
+                f"checkout, or {tool.hint}"
+            )
+
+
+def _program_version(tool: Tool) -> str | None:
+    try:
+        done = subprocess.run(
+            tool.command, capture_output=True, text=True, timeout=VERSION_TIMEOUT_S, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    said = (done.stdout or done.stderr).splitlines()
+    return said[0].strip() if done.returncode == 0 and said else None
+
+
+def _package_version(name: str) -> str | None:
+    package = NODE_MODULES / name / "package.json"
+    if not package.is_file():
+        return None
+    found = re.search(r'"version"\s*:\s*"([^"]+)"', package.read_text(encoding="utf-8"))
+    return found.group(1) if found else None

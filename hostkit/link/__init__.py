@@ -1,0 +1,1 @@
+"""The link: transports, MAVLink decoding, link statistics."""

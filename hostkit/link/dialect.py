@@ -1,0 +1,1 @@
+from hostkit.dialect import *  # noqa

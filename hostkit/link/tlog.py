@@ -1,0 +1,101 @@
+"""The tlog format: before each frame, eight bytes of big-endian microseconds since 1970."""
+
+import contextlib
+import os
+import struct
+from collections.abc import Generator
+from pathlib import Path
+from typing import BinaryIO
+
+from hostkit.errors import DeviceError, HostkitError
+
+STAMP = struct.Struct(">Q")
+MAGIC_V2 = 0xFD
+MAGIC_V1 = 0xFE
+LONGEST_FRAME_BYTES = 280
+
+
+def read_tlog(path: Path) -> Generator[bytes, None, None]:
+    """Yield the frames of a tlog, whatever protocol version they are of.
+
+    Where a time stamp is not followed by a frame, bytes are skipped to the next one; the decoder
+    counts what was lost by its sequence numbers.
+
+    Raises
+    ------
+    DeviceError
+        If the file cannot be read, or does not begin like a tlog.
+    """
+    try:
+        file = path.open("rb")
+    except OSError as error:
+        raise DeviceError(f"{path} cannot be read: {error.strerror}") from error
+    return _frames(file, path)
+
+
+def _frames(file: BinaryIO, path: Path) -> Generator[bytes, None, None]:
+    with file:
+        window = file.read(65536)
+        if len(window) <= STAMP.size or window[STAMP.size] not in (MAGIC_V1, MAGIC_V2):
+            raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
+        while window:
+            if len(window) < STAMP.size + LONGEST_FRAME_BYTES:
+                window += file.read(65536)
+            frame = _frame_at(window)
+            if frame is None:
+                window = window[1:]
+                continue
+            yield frame
+            window = window[STAMP.size + len(frame) :]
+
+
+def _frame_at(window: bytes) -> bytes | None:
+    """Return the frame behind a time stamp, or None if there is no whole one."""
+    head = window[STAMP.size : STAMP.size + 3]
+    if len(head) < 3 or head[0] not in (MAGIC_V1, MAGIC_V2):
+        return None
+    if head[0] == MAGIC_V1:
+        length = 8 + head[1]
+    else:
+        length = 12 + head[1] + (13 if head[2] & 1 else 0)
+    frame = window[STAMP.size : STAMP.size + length]
+    return frame if len(frame) == length else None
+
+
+class TlogWriter:
+    """Writes frames to a tlog; the file has its name only when it is complete.
+
+    Until :meth:`close` it is called ``NAME.part``, and every frame written so far is in it.
+
+    Raises
+    ------
+    HostkitError
+        If the file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._part = path.with_name(path.name + ".part")
+        try:
+            self._file = self._part.open("wb")
+        except OSError as error:
+            raise HostkitError(f"{self._part} cannot be written: {error.strerror}") from error
+
+    def write(self, time_us: int, frame: bytes) -> None:
+        """Append one frame, received at `time_us` microseconds since 1970."""
+        try:
+            self._file.write(STAMP.pack(time_us) + frame)
+        except OSError as error:
+            raise HostkitError(f"{self._part} cannot be written: {error.strerror}") from error
+
+    def close(self) -> None:
+        """Finish the file and give it its name."""
+        try:
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            self._file.close()
+            self._part.replace(self._path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._file.close()
+            raise HostkitError(f"{self._path} cannot be written: {error.strerror}") from error
