@@ -29,7 +29,7 @@ def say(message: str) -> None:
 
 
 def read_recording(path: Path) -> Recording:
-    """Load a recording and show its sanity card if there is anything to say.
+    """Load a recording and show its sanity card if anything on it deserves a second look.
 
     Raises
     ------
@@ -38,9 +38,10 @@ def read_recording(path: Path) -> Recording:
     """
     recording = load(path)
     card = check(recording)
-    if card.warnings:
+    if card.findings:
+        say(f"{path}: sanity card")
         for line in card.lines():
-            say(line)
+            say(f"  {line}")
     return recording
 
 

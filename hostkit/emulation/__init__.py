@@ -1,1 +1,1 @@
-"""TODO."""
+"""Emulation: boards that run the built firmware, the simulated core, the virtual sensor."""

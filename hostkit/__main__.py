@@ -1,0 +1,5 @@
+"""``python -m hostkit`` is ``hostkit``."""
+
+from hostkit.cli.main import main
+
+main()

@@ -1,0 +1,162 @@
+"""The subcommand ``emulate``: the generated code run without hardware."""
+
+import contextlib
+import math
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from hostkit.cli.generate import TARGET
+from hostkit.cli.inputs import DESIGN, JSON, read_design, read_recording, say
+from hostkit.cli.output import emit_json
+from hostkit.emulation.board import BuildResult
+from hostkit.emulation.pty_server import serve_pty
+from hostkit.emulation.run import EmulationResult, board_of, build, emulate as run_emulation
+from hostkit.emulation.run import stimulus_of
+from hostkit.errors import VerdictError
+from hostkit.records import FilterDesign
+from hostkit.recordings import Recording
+from hostkit.render import generate, target_of, write
+from hostkit.targets import TARGETS, Target
+from hostkit.tuning.evaluation import require_rate
+
+
+@click.command("emulate")
+@DESIGN
+@TARGET
+@click.option(
+    "--recording",
+    "recording_file",
+    required=True,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="REC",
+    help="What the virtual sensor feels.",
+)
+@click.option(
+    "--code",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="DIR",
+    help="Build and run the code in DIR as it stands, instead of rendering it afresh.",
+)
+@click.option(
+    "--pty",
+    is_flag=True,
+    help="Serve the board's serial port on a pseudo-terminal, in real time, until Ctrl-C.",
+)
+@JSON
+def emulate(
+    design_file: Path,
+    target_name: str,
+    recording_file: Path,
+    code: Path | None,
+    pty: bool,
+    as_json: bool,
+) -> None:
+    """Run the code of DESIGN on an emulated board or simulator, fed with a recording.
+
+    Every sample that comes back must equal the integer model bit for bit, else the exit code is 3.
+    With --pty the path of a pseudo-terminal is printed, to be given to `hostkit monitor`; the
+    recording is played over and over.
+
+    \b
+    Example:
+      hostkit emulate design.json --target atmega328p --recording sweep.csv
+      hostkit emulate design.json --target atmega328p --recording sweep.csv --pty
+    """
+    design, target = read_design(design_file), TARGETS[target_name]
+    recording = read_recording(recording_file)
+    require_rate(design.rate_hz, recording)
+    if pty and target.kind == "fpga":
+        raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")
+    with code_folder(design, target, code) as folder:
+        built = build(folder, target)
+        if pty:
+            serve(folder, target, design, recording)
+            return
+        result = run_emulation(folder, target, design, recording, progress(len(recording)))
+    if as_json:
+        emit_json(emulation_document(result, built))
+    else:
+        _show(result, built)
+    if not result.passed:
+        raise VerdictError(
+            f"{result.mismatches} of {result.samples} samples differ from the integer model, "
+            f"{result.missing} did not come back"
+        )
+
+
+@contextlib.contextmanager
+def code_folder(design: FilterDesign, target: Target, code: Path | None) -> Iterator[Path]:
+    """Give the folder with the code: the user's, or one that is rendered and then removed."""
+    if code is not None:
+        if target_of(code) is not target:
+            raise click.UsageError(f"{code} holds code for {target_of(code).name}")
+        yield code
+        return
+    with tempfile.TemporaryDirectory(prefix="hostkit-") as name:
+        write(generate(design, target), Path(name))
+        yield Path(name)
+
+
+def serve(folder: Path, target: Target, design: FilterDesign, recording: Recording) -> None:
+    """Serve a board on a pseudo-terminal until interrupted; its path is the first line printed."""
+    board = board_of(target)
+    stimulus = stimulus_of(design, recording, loop=True)
+
+    def announce(path: str) -> None:
+        click.echo(path)
+        sys.stdout.flush()
+        say(f"{target.name} waits there; for example: hostkit monitor DESIGN --port {path}")
+
+    serve_pty(lambda send, stop: board.serve(folder, stimulus, send, stop), announce)
+
+
+class progress:  # noqa: N801  # reads as a function where it is used
+    """Shows on a terminal how many of `total` samples are done."""
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+
+    def __call__(self, done: int) -> None:
+        if sys.stderr.isatty():
+            click.echo(f"\r{done} of {self._total} samples", nl=done >= self._total, err=True)
+
+
+def emulation_document(
+    result: EmulationResult, built: BuildResult | tuple[str, ...]
+) -> dict[str, object]:
+    """Return the result as the document ``hostkit.emulate/1``."""
+    error = result.max_abs_error_rad
+    sizes = built if isinstance(built, BuildResult) else None
+    return {
+        "schema": "hostkit.emulate/1",
+        "target": result.target,
+        "samples": result.samples,
+        "missing": result.missing,
+        "mismatches": result.mismatches,
+        "max_abs_error_deg": None if error is None else math.degrees(error),
+        "cycles_per_update": {"mean": result.cycles_mean, "max": result.cycles_max},
+        "flash_bytes": sizes and sizes.flash_bytes,
+        "ram_bytes": sizes and sizes.ram_bytes,
+        "faults": dict(result.faults),
+    }
+
+
+def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None:
+    error = result.max_abs_error_rad
+    shown = "none" if error is None else f"{math.degrees(error):.6f} deg"
+    click.echo(
+        f"{result.target}: {result.samples} samples, {result.missing} missing, "
+        f"{result.mismatches} mismatches; largest difference to the float model {shown}"
+    )
+    if result.cycles_mean is not None:
+        click.echo(
+            f"cycles per update: {result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max"
+        )
+    if isinstance(built, BuildResult) and built.flash_bytes is not None:
+        click.echo(f"image: {built.flash_bytes} bytes of flash, {built.ram_bytes} of static RAM")
+    for name, count in result.faults:
+        click.echo(f"fault {name}: {count}")

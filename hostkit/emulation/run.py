@@ -1,0 +1,244 @@
+"""Running generated code on a recording, and holding what it says against the models."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.attitude import wrap_rad
+from hostkit.design_file import digest
+from hostkit.emulation import avr_board, ghdl, host_board
+from hostkit.emulation.board import BuildResult, Stimulus
+from hostkit.errors import EmulationError, HostkitError
+from hostkit.filters import FILTERS
+from hostkit.link.decoder import Decoder, trace_of
+from hostkit.records import AXES, FilterDesign, read_only
+from hostkit.recordings import Recording
+from hostkit.sensors import SENSORS
+from hostkit.sensors.counts import Counts, to_counts, to_rate_and_force_g
+from hostkit.sensors.mpu6050 import settle_samples
+from hostkit.targets import Target
+from hostkit.units import RAD_PER_HALF_TURN_LSB
+
+Vector = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Progress = Callable[[int], None]
+
+BOARDS: dict[str, ModuleType] = {"host": host_board, "atmega328p": avr_board}
+"""Emulated boards of the microcontroller targets, each with ``build``, ``run`` and ``serve``."""
+
+ROOM_TEMPERATURE_DEG_C = 25.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmulationResult:
+    """What a target answered to a recording.
+
+    Attributes
+    ----------
+    samples, missing
+        Samples that came back, and samples of the recording that did not.
+    mismatches
+        Samples whose raw counts or angles differ from the integer model's.
+    residual_rad
+        Device minus float model, shape ``(samples, A)``.
+    cycles_mean, cycles_max
+        Clock cycles of a filter update; None where nothing counts them.
+    faults
+        What went wrong on the board, by name.
+    """
+
+    target: str
+    samples: int
+    missing: int
+    mismatches: int
+    residual_rad: Vector
+    cycles_mean: float | None
+    cycles_max: float | None
+    faults: tuple[tuple[str, int], ...]
+
+    def __post_init__(self) -> None:
+        """Make the array read-only."""
+        read_only(self.residual_rad)
+
+    @property
+    def max_abs_error_rad(self) -> float | None:
+        """Largest residual, or None if nothing came back."""
+        return float(np.abs(self.residual_rad).max()) if self.residual_rad.size else None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every sample came back as the integer model says."""
+        return self.samples > 0 and self.missing == 0 and self.mismatches == 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Answer:
+    """Rows of the recording that came back, with counts and angles."""
+
+    row: IntArray
+    counts: Counts
+    angle_raw: IntArray
+    cycles_mean: float | None
+    cycles_max: float | None
+    faults: tuple[tuple[str, int], ...] = ()
+
+
+def build(folder: Path, target: Target) -> BuildResult | tuple[str, ...]:
+    """Build a generated folder: an image for a microcontroller, analysed units for an FPGA.
+
+    Raises
+    ------
+    BuildError
+        If the code does not compile.
+    ToolMissingError
+        If the toolchain is not installed.
+    """
+    if target.kind == "fpga":
+        return ghdl.analyse(folder)
+    result: BuildResult = board_of(target).build(folder)
+    return result
+
+
+def board_of(target: Target) -> ModuleType:
+    """Return the emulated board of a target.
+
+    Raises
+    ------
+    HostkitError
+        If there is none.
+    """
+    if target.name not in BOARDS:
+        raise HostkitError(f"{target.name} has no emulated board; there are: {', '.join(BOARDS)}")
+    return BOARDS[target.name]
+
+
+def stimulus_of(design: FilterDesign, recording: Recording, *, loop: bool = False) -> Stimulus:
+    """Return what the virtual sensor feels when it plays a recording."""
+    temperature = recording.temperature_deg_c
+    if temperature is None:
+        temperature = np.full(len(recording), ROOM_TEMPERATURE_DEG_C)
+    return Stimulus(
+        angular_rate_rad_s=recording.angular_rate_rad_s,
+        specific_force_m_s2=recording.specific_force_m_s2,
+        temperature_deg_c=temperature,
+        settle_samples=settle_samples(design.sensor, design.rate_hz),
+        loop=loop,
+    )
+
+
+def emulate(
+    folder: Path,
+    target: Target,
+    design: FilterDesign,
+    recording: Recording,
+    progress: Progress | None = None,
+) -> EmulationResult:
+    """Run the built code of a folder on a recording and compare.
+
+    Parameters
+    ----------
+    folder
+        What `hostkit generate` wrote, built.
+    design
+        The design whose models judge.
+    progress
+        Called now and then with the number of samples done.
+
+    Raises
+    ------
+    EmulationError
+        If the board crashes, hangs, or runs another design.
+    ToolMissingError
+        If the emulator is not installed.
+    """
+    part = SENSORS[design.sensor.part]
+    counts = to_counts(
+        part, design.sensor, recording.angular_rate_rad_s, recording.specific_force_m_s2
+    )
+    if target.kind == "fpga":
+        answer = _simulate(folder, design, counts, progress)
+    else:
+        answer = _run(folder, target, design, recording, progress)
+    return _compare(target, design, counts, answer)
+
+
+def _simulate(
+    folder: Path, design: FilterDesign, counts: Counts, progress: Progress | None
+) -> _Answer:
+    run = ghdl.simulate(folder, counts.accel, counts.gyro, progress=progress)
+    columns = [("roll", "pitch").index(axis) for axis in AXES[design.axes]]
+    _require_digest(run.design_digest, design)
+    return _Answer(
+        row=np.arange(len(counts)),
+        counts=counts,
+        angle_raw=run.angle_raw[:, columns],
+        cycles_mean=float(run.latency_cycles.mean()),
+        cycles_max=float(run.latency_cycles.max()),
+    )
+
+
+def _run(
+    folder: Path,
+    target: Target,
+    design: FilterDesign,
+    recording: Recording,
+    progress: Progress | None,
+) -> _Answer:
+    run = board_of(target).run(folder, stimulus_of(design, recording), progress=progress)
+    decoder = Decoder()
+    frames = decoder.feed(run.stream)
+    for frame in frames:
+        if frame.name == "TILT_SAMPLE":
+            _require_digest(bytes(frame.message.digest).hex(), design)
+    trace = trace_of(frames, AXES[design.axes])
+    if not len(trace):
+        said = [str(f.message.text) for f in frames if f.name == "STATUSTEXT"]
+        raise EmulationError(
+            f"{target.name} sent {decoder.frames} messages but no sample"
+            + (f"; it says: {said[-1]!r}" if said else "")
+        )
+    return _Answer(
+        row=trace.sequence,
+        counts=Counts(accel=trace.accel_count, gyro=trace.gyro_count),
+        angle_raw=trace.angle_raw,
+        cycles_mean=run.cycles_mean,
+        cycles_max=run.cycles_max,
+        faults=run.faults,
+    )
+
+
+def _require_digest(found: str, design: FilterDesign) -> None:
+    if found != digest(design):
+        raise EmulationError(
+            f"the code runs design {found}, not {digest(design)}: generate it again"
+        )
+
+
+def _compare(
+    target: Target, design: FilterDesign, counts: Counts, answer: _Answer
+) -> EmulationResult:
+    filter_, part = FILTERS[design.filter], SENSORS[design.sensor.part]
+    wanted = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
+    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))
+    inside = (answer.row >= 0) & (answer.row < len(counts))
+    row = np.where(inside, answer.row, 0)
+    wrong = (
+        ~inside
+        | (answer.angle_raw != wanted[row]).any(axis=1)
+        | (answer.counts.accel != counts.accel[row]).any(axis=1)
+        | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
+    )
+    return EmulationResult(
+        target=target.name,
+        samples=len(answer.row),
+        missing=len(counts) - len(np.unique(answer.row[inside])),
+        mismatches=int(wrong.sum()),
+        residual_rad=wrap_rad(answer.angle_raw * RAD_PER_HALF_TURN_LSB - exact[row]),
+        cycles_mean=answer.cycles_mean,
+        cycles_max=answer.cycles_max,
+        faults=answer.faults,
+    )

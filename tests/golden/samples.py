@@ -1,0 +1,56 @@
+"""The committed samples: designs, their stimulus, and where they stand."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from designs import design
+
+from hostkit.records import FilterDesign
+
+ROOT = Path(__file__).resolve().parents[2]
+GENERATED = ROOT / "generated"
+TARGET_NAMES = ("host", "atmega328p", "spartan3adsp")
+VECTORS = "vectors.txt"
+HEADER = "accel x y z, gyro x y z: s16 counts; roll, pitch: s32 half turns; restarted"
+
+
+@dataclass(frozen=True)
+class Sample:
+    name: str
+    design: FilterDesign
+
+    @property
+    def folder(self) -> Path:
+        return GENERATED / self.name
+
+    def __str__(self) -> str:
+        return self.name
+
+
+SAMPLES = (
+    Sample("two-axis-atan2", design()),
+    Sample(
+        "paper-arcsin",
+        design(
+            axes="pitch", tilt="arcsin", eta=0.412, rate_hz=20.0, gyro_full_scale_deg_s=2000,
+            low_pass_setting=5,
+        ),
+    ),
+)
+
+
+def stimulus() -> np.ndarray:
+    """Counts of shape ``(N, 6)``: corners, full-range noise, and a turn through +-180 deg."""
+    rng = np.random.default_rng(2017)
+    edges = np.array([-32768, -32767, -16384, -1, 0, 1, 16384, 32767])
+    corners = rng.choice(edges, (200, 6))
+    noise = rng.integers(-32768, 32768, (200, 6))
+    angle = np.linspace(0.0, 4.0 * np.pi, 400)
+    turn = np.zeros((400, 6))
+    turn[:, 1], turn[:, 2] = 15000 * np.sin(angle), 15000 * np.cos(angle)
+    turn[:, 0], turn[:, 4] = 6000 * np.sin(angle / 3), 2000 * np.cos(angle / 3)
+    turn[:, 3] = 900
+    turn += rng.normal(0, 60, turn.shape)
+    zero = np.zeros((2, 6))
+    return np.concatenate([corners, zero, noise, np.round(turn)]).astype(np.int64)
