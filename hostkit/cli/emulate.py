@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from hostkit.cli.generate import TARGET
-from hostkit.cli.inputs import DESIGN, JSON, read_design, read_recording, say
+from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.pty_server import serve_pty
@@ -18,7 +18,7 @@ from hostkit.emulation.run import EmulationResult, board_of, build, emulate as r
 from hostkit.emulation.run import stimulus_of
 from hostkit.errors import VerdictError
 from hostkit.records import FilterDesign
-from hostkit.recordings import Recording
+from hostkit.recordings import Recording, load
 from hostkit.render import generate, target_of, write
 from hostkit.targets import TARGETS, Target
 from hostkit.tuning.evaluation import require_rate
@@ -67,7 +67,7 @@ def emulate(
       hostkit emulate design.json --target atmega328p --recording sweep.csv --pty
     """
     design, target = read_design(design_file), TARGETS[target_name]
-    recording = read_recording(recording_file)
+    recording = load(recording_file)
     require_rate(design.rate_hz, recording)
     if pty and target.kind == "fpga":
         raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")

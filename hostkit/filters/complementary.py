@@ -158,14 +158,14 @@ def lower(design: FilterDesign) -> FixedPointSpec:
     sensor = SENSORS[design.sensor.part]
     rad_s_per_count = sensor.rad_s_per_count(design.sensor)
     gain = rad_s_per_count * design.period_s / RAD_PER_HALF_TURN_LSB
-    if gain >= 2**16:
+    rate_gain = coefficient("rate_gain", gain, "half turns / 2^31 per count")
+    if rate_gain.format.fraction_bits < 1:
         degrees = design.sensor.gyro_full_scale_deg_s * design.period_s
         raise FormatError(
             f"rate_hz = {design.rate_hz:g} with gyro_full_scale_deg_s = "
             f"{design.sensor.gyro_full_scale_deg_s} turns up to {degrees:.4g} deg per sample; "
             "the limit is 180 deg: sample faster or narrow the range"
         )
-    rate_gain = coefficient("rate_gain", gain, "half turns / 2^31 per count")
     blend = coefficient("blend", 1.0 - eta, "1")
     full_scale_rad_s = rad_s_per_count * 32768
     tau_s = tau_from_eta(eta, design.period_s)

@@ -163,4 +163,5 @@ def _steps_table(steps: tuple[Step, ...]) -> Table:
         title="Steps",
         header=("step", "outcome", "detail"),
         rows=tuple((s.name, "ok" if s.ok else "failed", s.detail) for s in steps),
+        is_text=True,
     )

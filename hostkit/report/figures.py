@@ -76,10 +76,14 @@ def _thin(samples: int) -> slice:
 
 
 def convergence(history_rad: Vector) -> str:
-    """Best cost of the swarm over its iterations."""
+    """How far the swarm was from its end, over its iterations."""
     figure, axes, mpl = _figure()
-    axes.plot(history_rad * DEG_PER_RAD, color=BLUE, drawstyle="steps-post")
-    axes.set(xlabel="iteration", ylabel="best cost, deg")
+    excess_deg = (history_rad - history_rad[-1]) * DEG_PER_RAD
+    excess_deg = np.where(excess_deg > 0.0, excess_deg, np.nan)
+    axes.semilogy(excess_deg, color=BLUE, drawstyle="steps-post", marker=".")
+    axes.set(xlabel="iteration", ylabel="excess cost, deg", xlim=(0, len(history_rad) - 1))
+    final_deg = history_rad[-1] * DEG_PER_RAD
+    axes.set_title(f"final cost {final_deg:.6g} deg", loc="right", fontsize=10)
     return _svg(figure, mpl)
 
 
@@ -100,7 +104,7 @@ def fit(evaluation: Evaluation, names: Sequence[str]) -> str:
             below.plot(time_s, residual[thin], color=ORANGE)
         above.plot(time_s, angle[thin], color=BLUE, label="filter")
         above.set_ylabel(f"{name}, deg")
-        above.legend(loc="upper right", ncols=2)
+        above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2)
         below.set_ylabel("error, deg")
     axes[-1].set_xlabel("time, s")
     return _svg(figure, mpl)

@@ -20,12 +20,13 @@ class Fact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
-    """A table; columns after the first are numbers."""
+    """A table; columns after the first are numbers unless `is_text`."""
 
     title: str
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     note: str = ""
+    is_text: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -61,8 +61,9 @@ def tuning_plots(result: TuningResult) -> tuple[Plot, ...]:
         Plot(
             title="Convergence",
             caption=(
-                f"Best cost of the swarm ({design.tuning.optimiser}, {design.tuning.particles} "
-                f"particles, seed {design.tuning.seed}) over its iterations."
+                f"Best cost of the swarm above its final one ({design.tuning.optimiser}, "
+                f"{design.tuning.particles} particles, seed {design.tuning.seed}); the line ends "
+                "where the swarm improves no more."
             ),
             svg=figures.convergence(result.swarm.history),
         ),

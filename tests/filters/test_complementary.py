@@ -139,3 +139,11 @@ def test_impossible_eta_is_refused(eta: float) -> None:
 def test_half_a_turn_per_sample_is_refused_with_the_numbers() -> None:
     with pytest.raises(FormatError, match="200 deg per sample; the limit is 180"):
         lower(design(rate_hz=10.0, gyro_full_scale_deg_s=2000))
+
+
+def test_rate_gain_at_its_limit_is_lowered_or_refused() -> None:
+    limit_hz = 2000 / 180
+    with pytest.raises(FormatError, match="limit is 180"):
+        lower(design(rate_hz=limit_hz * (1 + 2e-6), gyro_full_scale_deg_s=2000))
+    spec = lower(design(rate_hz=limit_hz * 1.001, gyro_full_scale_deg_s=2000))
+    assert spec.rate_gain.format.fraction_bits == 1
