@@ -74,7 +74,8 @@ def pitch_from_up(up: Vector) -> Vector:
 
 def to_body(mounting: Mounting, vectors: Vector) -> Vector:
     """Express sensor-axis vectors, shape ``(N, 3)``, in body axes."""
-    return vectors[..., list(mounting.source)] * np.asarray(mounting.sign, dtype=vectors.dtype)
+    sign = np.asarray(mounting.sign, dtype=np.float64)
+    return np.multiply(vectors[..., list(mounting.source)], sign)
 
 
 def inclination_rad(up_a: Vector, up_b: Vector) -> Vector:
@@ -83,4 +84,5 @@ def inclination_rad(up_a: Vector, up_b: Vector) -> Vector:
     The two-argument form ``atan2(|a x b|, a . b)`` keeps its digits at small angles, where the
     arc cosine of the dot product loses them.
     """
-    return np.arctan2(np.linalg.norm(np.cross(up_a, up_b), axis=-1), np.sum(up_a * up_b, axis=-1))
+    sine = np.linalg.norm(np.cross(up_a, up_b), axis=-1)
+    return np.asarray(np.arctan2(sine, np.sum(up_a * up_b, axis=-1)))

@@ -134,7 +134,8 @@ def run_demo(out: Path, seed: int) -> DemoResult:
     emulations = []
     for target in TARGETS:
         found = steps.attempt(
-            target.name, lambda target=target: _emulate(target, tuning.design, other, out)  # type: ignore[misc]
+            target.name,
+            lambda target=target: _emulate(target, tuning.design, other, out),  # type: ignore[misc]
         )
         if found is not None:
             emulations.append(found)

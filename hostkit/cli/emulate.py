@@ -4,7 +4,7 @@ import contextlib
 import math
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import click
@@ -14,11 +14,11 @@ from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.pty_server import serve_pty
-from hostkit.emulation.run import EmulationResult, board_of, build, emulate as run_emulation
-from hostkit.emulation.run import stimulus_of
+from hostkit.emulation.run import EmulationResult, board_of, build, stimulus_of
+from hostkit.emulation.run import emulate as run_emulation
 from hostkit.errors import VerdictError
-from hostkit.records import FilterDesign
 from hostkit.recordings import Recording, load
+from hostkit.records import FilterDesign
 from hostkit.render import generate, target_of, write
 from hostkit.targets import TARGETS, Target
 from hostkit.tuning.evaluation import require_rate
@@ -76,7 +76,7 @@ def emulate(
         if pty:
             serve(folder, target, design, recording)
             return
-        result = run_emulation(folder, target, design, recording, progress(len(recording)))
+        result = run_emulation(folder, target, design, recording, show_progress(len(recording)))
     if as_json:
         emit_json(emulation_document(result, built))
     else:
@@ -114,15 +114,14 @@ def serve(folder: Path, target: Target, design: FilterDesign, recording: Recordi
     serve_pty(lambda send, stop: board.serve(folder, stimulus, send, stop), announce)
 
 
-class progress:  # noqa: N801  # reads as a function where it is used
-    """Shows on a terminal how many of `total` samples are done."""
+def show_progress(total: int) -> Callable[[int], None]:
+    """Return what shows, on a terminal, how many of `total` samples are done."""
 
-    def __init__(self, total: int) -> None:
-        self._total = total
-
-    def __call__(self, done: int) -> None:
+    def show(done: int) -> None:
         if sys.stderr.isatty():
-            click.echo(f"\r{done} of {self._total} samples", nl=done >= self._total, err=True)
+            click.echo(f"\r{done} of {total} samples", nl=done >= total, err=True)
+
+    return show
 
 
 def emulation_document(
@@ -153,9 +152,7 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
         f"{result.mismatches} mismatches; largest difference to the float model {shown}"
     )
     if result.cycles_mean is not None:
-        click.echo(
-            f"cycles per update: {result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max"
-        )
+        click.echo(f"cycles per update: {result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max")
     if isinstance(built, BuildResult) and built.flash_bytes is not None:
         click.echo(f"image: {built.flash_bytes} bytes of flash, {built.ram_bytes} of static RAM")
     for name, count in result.faults:

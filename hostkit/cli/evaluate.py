@@ -84,7 +84,9 @@ def _show(evaluations: list[Evaluation]) -> None:
         )
         difference = math.degrees(e.integer_vs_float_max_rad)
         click.echo(f"{e.recording:<{width}}{e.samples:9d}{columns}{difference:11.6f}")
-    means = "".join(f"{mean:17.4f}{'':9}" for q in shown if (mean := _mean_deg(evaluations, q)) is not None)
+    means = "".join(
+        f"{mean:17.4f}{'':9}" for q in shown if (mean := _mean_deg(evaluations, q)) is not None
+    )
     if means:
         click.echo(f"{'mean':<{width}}{'':9}{means}")
     else:

@@ -5,8 +5,8 @@ from pathlib import Path
 import click
 
 from hostkit.design_file import digest, edited_by_hand, load_design
-from hostkit.records import FilterDesign
 from hostkit.recordings import Recording, check, load
+from hostkit.records import FilterDesign
 
 RECORDINGS = click.argument(
     "recording_files",

@@ -95,9 +95,7 @@ def monitor(
         session = Session(
             design=design,
             transport=transport,
-            thresholds=Thresholds(
-                max_rms_deg=max_rms_deg, max_lost_share=max_lost_percent / 100.0
-            ),
+            thresholds=Thresholds(max_rms_deg=max_rms_deg, max_lost_share=max_lost_percent / 100.0),
             duration_s=duration_s,
             recorder=recorder,
             progress=_Progress(),

@@ -140,7 +140,7 @@ def simulate(
     \b
     Example:
       hostkit simulate --profile free --duration 60 --rate 100 --seed 1 -o flight.csv
-    """  # noqa: D301
+    """
     sensor = SensorConfig(
         part=PART.name,
         gyro_full_scale_deg_s=int(gyro_range),

@@ -11,7 +11,15 @@ from hostkit.design_file import digest, save_design
 from hostkit.errors import DesignError
 from hostkit.filters.complementary import crossover_hz, tau_from_eta
 from hostkit.optimisers import OPTIMISERS
-from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Mounting, Objective, TiltMethod
+from hostkit.records import (
+    AXES,
+    OBJECTIVES,
+    TILT_METHODS,
+    AxisChoice,
+    Mounting,
+    Objective,
+    TiltMethod,
+)
 from hostkit.sensors import SENSORS
 from hostkit.tuning import TuningOptions, TuningResult, sensor_config
 from hostkit.tuning import tune as run_tuning

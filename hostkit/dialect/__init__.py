@@ -58,7 +58,8 @@ def _find_message(sources: list[ElementTree.Element], name: str) -> ElementTree.
             if message.get("name") == name:
                 return message
     raise RenderError(
-        f"pymavlink {version('pymavlink')} defines no message {name}; install pymavlink 2.4.41 or later"
+        f"pymavlink {version('pymavlink')} defines no message {name}; "
+        "install pymavlink 2.4.41 or later"
     )
 
 

@@ -1,0 +1,122 @@
+"""A served board under the real monitor: it passes, and what is wrong is found."""
+
+import contextlib
+import json
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from designs import design
+
+from hostkit.cli.main import run
+from hostkit.design_file import save_design
+from hostkit.emulation.tools import TOOLS, find
+from hostkit.filters.complementary import parameters
+from hostkit.recordings import save
+from hostkit.simulation import SensorErrors, simulate
+from hostkit.targets import TARGETS
+
+LIVE_S = 3.0
+DESIGN = design(accel_full_scale_g=4)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A design and a recording."""
+    missing = [t.name for t in TOOLS if not find(t).found]
+    if missing:
+        pytest.skip(f"not installed: {', '.join(missing)}")
+    path = tmp_path_factory.mktemp("live")
+    recording = simulate(
+        "sine-sweep",
+        duration_s=5.0,
+        rate_hz=100.0,
+        sensor=DESIGN.sensor,
+        errors=SensorErrors(),
+        rng=np.random.default_rng(1),
+    )
+    save(recording, path / "sweep.csv")
+    save_design(DESIGN, path / "design.json")
+    return path
+
+
+@pytest.fixture(scope="module", params=["atmega328p", "host"])
+def code(request: pytest.FixtureRequest, folder: Path) -> Path:
+    out = folder / request.param
+    arguments = ["generate", str(folder / "design.json"), "--target", request.param]
+    assert run([*arguments, "--out", str(out)]) == 0
+    return out
+
+
+@contextlib.contextmanager
+def served(folder: Path, code: Path) -> Iterator[str]:
+    command = [sys.executable, "-m", "hostkit", "emulate", str(folder / "design.json")]
+    command += ["--target", code.name.split("-")[0], "--code", str(code), "--pty"]
+    command += ["--recording", str(folder / "sweep.csv")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
+        try:
+            port = p.stdout.readline().strip()
+            assert port, p.stderr.read()
+            yield port
+        finally:
+            p.send_signal(signal.SIGINT)
+            p.communicate(timeout=30)
+    assert p.returncode == 0
+
+
+def monitor(capsys: pytest.CaptureFixture[str], design_file: Path, port: str, *more: str):
+    arguments = ["monitor", str(design_file), "--port", port, "--duration", str(LIVE_S), "--json"]
+    code = run([*arguments, *more])
+    out, err = capsys.readouterr()
+    return code, json.loads(out), err
+
+
+def test_right_device_passes_twice_and_another_design_is_refused(folder, code, capsys) -> None:
+    other = folder / "other.json"
+    save_design(replace(DESIGN, parameters=parameters(0.99650001)), other)
+    with served(folder, code) as port:
+        for attempt in range(2):
+            tlog = folder / f"{code.name}{attempt}.tlog"
+            exit_code, document, _ = monitor(
+                capsys, folder / "design.json", port, "--record", str(tlog)
+            )
+            assert (exit_code, document["verdict"]) == (0, "pass")
+            assert (document["lost"], document["mismatches"]) == (0, 0)
+            assert document["samples"] > 0.9 * LIVE_S * DESIGN.rate_hz
+            _, again, _ = monitor(capsys, folder / "design.json", f"file:{tlog}")
+            assert (again["samples"], again["verdict"]) == (document["samples"], "pass")
+        exit_code, document, err = monitor(capsys, other, port)
+        assert (exit_code, document["verdict"], document["digest_ok"]) == (3, "refused", False)
+        assert "runs design" in err
+
+
+def test_one_changed_bit_of_the_filter_is_found(folder, code, capsys, tmp_path: Path) -> None:
+    changed = tmp_path / f"{code.name}-changed"
+    for path in code.rglob("*"):
+        if path.is_file():
+            copy = changed / path.relative_to(code)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(path.read_bytes())
+    header = changed / "hk_filter.h"
+    line = next(x for x in header.read_text().splitlines() if "HK_BLEND_RAW" in x)
+    raw = int(line.split("INT32_C(")[1].split(")")[0])
+    header.write_text(header.read_text().replace(f"INT32_C({raw})", f"INT32_C({raw ^ 1})"))
+    with served(folder, changed) as port:
+        exit_code, document, err = monitor(capsys, folder / "design.json", port)
+    assert (exit_code, document["verdict"], document["digest_ok"]) == (3, "fail", True)
+    assert document["mismatches"] > 0
+    assert "integer model" in err
+    capsys.readouterr()
+    arguments = ["emulate", str(folder / "design.json"), "--target", code.name]
+    arguments += ["--code", str(changed), "--recording", str(folder / "sweep.csv"), "--json"]
+    assert run(arguments) == 3
+    assert json.loads(capsys.readouterr().out)["mismatches"] > 0
+
+
+def test_targets_with_a_port_are_the_microcontrollers() -> None:
+    assert {t.name for t in TARGETS if t.kind == "mcu"} == {"host", "atmega328p"}
