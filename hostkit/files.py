@@ -37,7 +37,8 @@ def write_aside(path: Path, content: bytes | str) -> None:
 
 
 def _write_temporary(target: Path, payload: bytes) -> Path:
-    handle, name = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".part", dir=target.parent)
+    prefix = f".{target.name[:100]}."
+    handle, name = tempfile.mkstemp(prefix=prefix, suffix=".part", dir=target.parent)
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as stream:

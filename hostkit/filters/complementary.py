@@ -250,9 +250,7 @@ def step_integer(
     return _correct(spec, angle_raw, _rate_steps(spec, gyro_count), tilt)
 
 
-def _correct(
-    spec: FixedPointSpec, angle: IntArray, step: IntArray, tilt: IntArray
-) -> IntArray:
+def _correct(spec: FixedPointSpec, angle: IntArray, step: IntArray, tilt: IntArray) -> IntArray:
     predicted = wrap32(angle + step)
     innovation = wrap32(tilt - predicted)
     correction = shift_round(innovation * spec.blend.raw, spec.blend.format.fraction_bits)
@@ -274,15 +272,23 @@ def run_integer(spec: FixedPointSpec, accel_count: IntArray, gyro_count: IntArra
     """
     tilt = measured_tilt_raw(spec, accel_count)
     step = _rate_steps(spec, gyro_count)
-    out = np.empty_like(tilt)
+    columns = [
+        _run_axis(spec, step[:, axis].tolist(), tilt[:, axis].tolist())
+        for axis in range(tilt.shape[1])
+    ]
+    return np.array(columns, dtype=np.int64).T
+
+
+def _run_axis(spec: FixedPointSpec, steps: list[int], tilts: list[int]) -> list[int]:
+    """Step through one axis; the wraps of :func:`wrap32` are written out, for speed."""
     blend, bits = spec.blend.raw, spec.blend.format.fraction_bits
-    for axis in range(tilt.shape[1]):
-        angle: int | None = None
-        for k, (s, m) in enumerate(zip(step[:, axis].tolist(), tilt[:, axis].tolist(), strict=True)):
-            if angle is None:
-                angle = m
-            else:
-                predicted = wrap32(angle + s)
-                angle = wrap32(predicted + shift_round(wrap32(m - predicted) * blend, bits))
-            out[k, axis] = angle
-    return out
+    half, half_turn, mask = 1 << (bits - 1), 2**31, 2**32 - 1
+    angle = tilts[0]
+    angles = [angle]
+    for step, tilt in zip(steps[1:], tilts[1:], strict=True):
+        predicted = angle + step
+        innovation = ((tilt - predicted + half_turn) & mask) - half_turn
+        angle = predicted + ((innovation * blend + half) >> bits)
+        angle = ((angle + half_turn) & mask) - half_turn
+        angles.append(angle)
+    return angles

@@ -22,7 +22,7 @@ ROOT_FRACTION_BITS = 8
 """Fraction bits of the integer square root in the arc sine."""
 
 GAIN_BITS = 17
-"""Width of the CORDIC gain: one bit less than a coefficient, so a product with a count is 32 bits."""
+"""Width of the CORDIC gain: a bit less than a coefficient, so a product with a count fits 32."""
 
 IntArray = NDArray[np.int64]
 

@@ -15,9 +15,7 @@ def rastrigin(points: np.ndarray) -> np.ndarray:
     return (shifted**2 - 10 * np.cos(2 * np.pi * shifted) + 10).sum(axis=1)
 
 
-@pytest.mark.parametrize(
-    ("cost", "optimum", "dimensions"), [(sphere, 0.7, 5), (rastrigin, 0.3, 2)]
-)
+@pytest.mark.parametrize(("cost", "optimum", "dimensions"), [(sphere, 0.7, 5), (rastrigin, 0.3, 2)])
 @pytest.mark.parametrize("name", OPTIMISERS.names())
 def test_known_minima_are_found(name: str, cost, optimum: float, dimensions: int) -> None:
     box = np.full(dimensions, 5.0)
@@ -75,9 +73,7 @@ def test_nan_never_wins() -> None:
     result = minimise(holes, np.array([-1.0]), np.array([1.0]), rng=np.random.default_rng(2))
     assert result.x[0] == pytest.approx(0.7, abs=1e-4)
     with pytest.raises(HostkitError, match="not finite"):
-        minimise(
-            lambda p: p[:, 0] * np.nan, np.zeros(1), np.ones(1), rng=np.random.default_rng(0)
-        )
+        minimise(lambda p: p[:, 0] * np.nan, np.zeros(1), np.ones(1), rng=np.random.default_rng(0))
 
 
 @pytest.mark.parametrize(("low", "high"), [(1.0, 0.0), (0.0, 0.0), (np.nan, 1.0), (0.0, np.inf)])

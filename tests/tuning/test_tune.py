@@ -1,0 +1,175 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from designs import design
+
+from hostkit.attitude import up_from_tilt, wrap_rad
+from hostkit.errors import HostkitError, RecordingError
+from hostkit.filters.complementary import parameters, run_float
+from hostkit.recordings import Recording
+from hostkit.records import AXES, Mounting
+from hostkit.simulation import SensorErrors, simulate
+from hostkit.tuning import TuningOptions, evaluate, mean_rms_rad, sensor_config, tune
+from hostkit.tuning.objective import cost, prepare, reference_rad
+from hostkit.tuning.tune import TAU_BOUNDS_S
+from hostkit.units import STANDARD_GRAVITY_M_S2
+
+SENSOR = design(accel_full_scale_g=4).sensor
+
+
+def recorded(profile: str = "steps", *, seed: int = 1, duration_s: float = 10.0) -> Recording:
+    return simulate(
+        profile,
+        duration_s=duration_s,
+        rate_hz=100.0,
+        sensor=SENSOR,
+        errors=SensorErrors(vibration_m_s2=2.0),
+        rng=np.random.default_rng(seed),
+    )
+
+
+def filter_cost(d, recording: Recording, objective: str) -> float:
+    """The objective, computed the long way: by running the filter itself."""
+    force = recording.specific_force_m_s2 / STANDARD_GRAVITY_M_S2
+    angle = run_float(d, recording.angular_rate_rad_s, force)
+    found = []
+    for i, axis in enumerate(AXES[d.axes]):
+        reference = reference_rad(recording, axis, d.mounting)
+        scored = recording.valid & np.isfinite(reference)
+        error = wrap_rad(angle[:, i] - reference)[scored]
+        mean = np.mean(np.abs(error)) if objective == "mae" else np.sqrt(np.mean(error**2))
+        found.append(mean)
+    return float(np.mean(found))
+
+
+@pytest.mark.parametrize("objective", ["rmse", "mae"])
+@pytest.mark.parametrize("axes", ["roll", "pitch", "both"])
+@pytest.mark.parametrize("tilt", ["atan2", "arcsin"])
+@pytest.mark.parametrize("eta", [0.3, 0.97, 0.9995])
+def test_error_form_is_the_filter(objective, axes, tilt, eta) -> None:
+    recording = recorded()
+    lost = np.array(recording.up_reference)
+    lost[200:260] = np.nan
+    valid = np.array(recording.valid)
+    valid[:50] = False
+    recording = replace(recording, up_reference=lost, valid=valid)
+    d = replace(design(axes=axes, tilt=tilt), parameters=parameters(eta))
+    streams = prepare((recording,), axes=axes, tilt=tilt, mounting=d.mounting, period_s=0.01)
+    found = cost(streams, objective, np.array([eta]))[0]
+    assert found == pytest.approx(filter_cost(d, recording, objective), rel=1e-9)
+
+
+def test_every_recording_counts_the_same_however_long() -> None:
+    long, short = recorded(duration_s=20.0), recorded("sine-sweep", duration_s=5.0)
+    options = {"axes": "roll", "tilt": "atan2", "mounting": Mounting(), "period_s": 0.01}
+    eta = np.array([0.97])
+    apart = [cost(prepare((r,), **options), "rmse", eta)[0] for r in (long, short)]
+    together = cost(prepare((long, short), **options), "rmse", eta)[0]
+    assert together == pytest.approx(np.mean(apart), rel=1e-12)
+
+
+@pytest.mark.parametrize("objective", ["rmse", "mae"])
+def test_optimum_is_that_of_a_dense_grid(objective: str) -> None:
+    recording = recorded()
+    result = tune((recording,), TuningOptions(axes="roll", objective=objective, sensor=SENSOR))
+    streams = prepare((recording,), axes="roll", tilt="atan2", mounting=Mounting(), period_s=0.01)
+    tau_s = np.geomspace(*TAU_BOUNDS_S, 4000)
+    grid = cost(streams, objective, tau_s / (tau_s + 0.01))
+    assert result.swarm.cost <= grid.min() + 1e-9
+    tau = 0.01 * result.design.parameter("eta") / (1 - result.design.parameter("eta"))
+    assert tau == pytest.approx(tau_s[grid.argmin()], rel=0.01)
+    assert result.swarm.evaluations == 2020
+    assert not result.swarm.at_bound.any()
+
+
+def test_design_remembers_how_it_was_found() -> None:
+    recording = recorded()
+    result = tune((recording,), TuningOptions(seed=11, iterations=5, sensor=SENSOR))
+    record = result.design.tuning
+    assert (record.seed, record.iterations, record.evaluations) == (11, 5, 120)
+    assert record.recordings[0].samples == len(recording)
+    assert record.rmse_deg == pytest.approx(math.degrees(result.rms_rad))
+    again = tune((recording,), TuningOptions(seed=11, iterations=5, sensor=SENSOR))
+    assert again.design == result.design
+
+
+def test_evaluation_against_a_constructed_error() -> None:
+    """A reference turned by one degree about x is one degree of roll and of inclination."""
+    recording = simulate(
+        "rest",
+        duration_s=5.0,
+        rate_hz=100.0,
+        sensor=SENSOR,
+        errors=SensorErrors.none(),
+        rng=np.random.default_rng(0),
+    )
+    samples = len(recording)
+    level = up_from_tilt(np.zeros(samples), np.zeros(samples))
+    tilted = up_from_tilt(np.full(samples, math.radians(1.0)), np.zeros(samples))
+    recording = replace(
+        recording,
+        specific_force_m_s2=level * STANDARD_GRAVITY_M_S2,
+        up_reference=tilted,
+        angular_rate_rad_s=np.zeros((samples, 3)),
+    )
+    scores = {s.quantity: s for s in evaluate(design(), recording).scores}
+    assert math.degrees(scores["roll"].rms_rad) == pytest.approx(1.0, abs=1e-3)
+    assert math.degrees(scores["roll"].max_rad) == pytest.approx(1.0, abs=1e-3)
+    assert math.degrees(scores["pitch"].rms_rad) == pytest.approx(0.0, abs=1e-3)
+    assert math.degrees(scores["inclination"].rms_rad) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_evaluation_without_a_reference_still_compares_the_models() -> None:
+    recording = replace(recorded(), up_reference=None)
+    evaluation = evaluate(design(accel_full_scale_g=4), recording)
+    assert evaluation.scores == ()
+    assert 0 < math.degrees(evaluation.integer_vs_float_max_rad) < 0.005
+    assert mean_rms_rad((evaluation,), "roll") is None
+
+
+def test_clipped_samples_are_counted() -> None:
+    recording = recorded()
+    rate = np.array(recording.angular_rate_rad_s)
+    rate[100:110, 2] = math.radians(600)
+    assert (
+        evaluate(
+            design(accel_full_scale_g=16), replace(recording, angular_rate_rad_s=rate)
+        ).clipped_samples
+        == 10
+    )
+
+
+def test_ranges_leave_room_and_what_is_given_is_kept() -> None:
+    recording = recorded()
+    rate = np.array(recording.angular_rate_rad_s)
+    rate[5, 0] = math.radians(340)
+    recording = replace(recording, angular_rate_rad_s=rate)
+    chosen = sensor_config((recording,), 100.0)
+    assert chosen.gyro_full_scale_deg_s == 1000
+    assert chosen.low_pass_setting == 3
+    kept = sensor_config((recording,), 100.0, gyro_full_scale_deg_s=250, low_pass_setting=0)
+    assert (kept.gyro_full_scale_deg_s, kept.low_pass_setting) == (250, 0)
+
+
+def test_low_pass_follows_the_rate() -> None:
+    recording = recorded()
+    found = [sensor_config((recording,), rate).low_pass_setting for rate in (1000, 200, 100, 20, 5)]
+    assert found == [1, 2, 3, 5, 6]
+
+
+def test_what_cannot_be_tuned_is_refused() -> None:
+    recording = recorded()
+    with pytest.raises(RecordingError, match="no recording"):
+        tune((), TuningOptions())
+    with pytest.raises(RecordingError, match="no reference"):
+        tune((replace(recording, up_reference=None),), TuningOptions())
+    with pytest.raises(RecordingError, match="none of its"):
+        tune((replace(recording, valid=np.zeros(len(recording), bool)),), TuningOptions())
+    with pytest.raises(RecordingError, match="200 Hz"):
+        tune((recording, replace(recording, rate_hz=200.0)), TuningOptions())
+    with pytest.raises(HostkitError, match="no optimiser"):
+        tune((recording,), TuningOptions(optimiser="magic"))
+    with pytest.raises(RecordingError, match="eta holds for one rate"):
+        evaluate(design(rate_hz=50.0), recording)
