@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +86,7 @@ class Validator:
         step = np.diff(trace.sequence, prepend=first)
         gap = ~trace.restarted & (step > 1)
         self.lost += int((step[gap] - 1).sum())
-        follows = ~trace.restarted & (step == 1)
+        follows: NDArray[np.bool_] = ~trace.restarted & (step == 1)
         if self._sequence is None:
             follows[0] = False
         return follows
@@ -112,7 +113,7 @@ class Validator:
         angle = trace.angle_raw * RAD_PER_HALF_TURN_LSB
         exact = np.empty_like(angle)
         starts = [0, *(int(k) for k in np.flatnonzero(~follows) if k > 0), len(trace)]
-        for begin, end in zip(starts[:-1], starts[1:], strict=True):
+        for begin, end in pairwise(starts):
             state = self._float_rad
             if trace.restarted[begin]:
                 state = None

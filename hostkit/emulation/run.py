@@ -15,8 +15,8 @@ from hostkit.emulation.board import BuildResult, Stimulus
 from hostkit.errors import EmulationError, HostkitError
 from hostkit.filters import FILTERS
 from hostkit.link.decoder import Decoder, trace_of
-from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.recordings import Recording
+from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts, to_rate_and_force_g
 from hostkit.sensors.mpu6050 import settle_samples

@@ -283,8 +283,8 @@ def _run_axis(spec: FixedPointSpec, steps: list[int], tilts: list[int]) -> list[
     """Step through one axis; the wraps of :func:`wrap32` are written out, for speed."""
     blend, bits = spec.blend.raw, spec.blend.format.fraction_bits
     half, half_turn, mask = 1 << (bits - 1), 2**31, 2**32 - 1
-    angle = tilts[0]
-    angles = [angle]
+    angles = tilts[:1]
+    angle = angles[0] if angles else 0
     for step, tilt in zip(steps[1:], tilts[1:], strict=True):
         predicted = angle + step
         innovation = ((tilt - predicted + half_turn) & mask) - half_turn

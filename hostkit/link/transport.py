@@ -85,7 +85,9 @@ class SerialTransport:
 def _explain(port: str, error: Exception) -> str:
     number = getattr(error, "errno", None)
     if number == errno.ENOENT:
-        return f"port {port} does not exist; `python -m serial.tools.list_ports` lists those that do"
+        return (
+            f"port {port} does not exist; `python -m serial.tools.list_ports` lists those that do"
+        )
     if number == errno.EACCES:
         return (
             f"port {port} may not be opened: permission denied; join the group that owns it, "

@@ -100,7 +100,8 @@ def _move(
     attractor = phi * best + (1.0 - phi) * leader
     reach = alpha * np.abs(best.mean(axis=0) - position)
     step = reach * np.log(1.0 / (1.0 - rng.random(position.shape)))
-    return attractor + np.where(rng.random(position.shape) < 0.5, step, -step)
+    sign = np.where(rng.random(position.shape) < 0.5, 1.0, -1.0)
+    return np.asarray(attractor + sign * step)
 
 
 def _reflect(position: Vector, lower: Vector, upper: Vector) -> Vector:

@@ -47,9 +47,7 @@ def link_plan(rate_hz: float, target: Target) -> LinkPlan:
         "ATTITUDE": rate_hz / attitude_every,
         "HEARTBEAT": 1000.0 / HEARTBEAT_MS,
     }
-    needed = sum(
-        hz * (payload_bytes(name) + FRAME_OVERHEAD_BYTES) for name, hz in rates_hz.items()
-    )
+    needed = sum(hz * (payload_bytes(name) + FRAME_OVERHEAD_BYTES) for name, hz in rates_hz.items())
     usable = USABLE_SHARE * target.baud / BITS_PER_BYTE
     if target.baud and needed > usable:
         fits_hz = rate_hz * usable / needed

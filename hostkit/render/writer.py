@@ -39,7 +39,9 @@ def render_target(design: FilterDesign, target: Target) -> tuple[GeneratedFile, 
             output = path.relative_to(root / folder).as_posix()
             if path.suffix == ".j2":
                 text = env.get_template(template).render(banner=context.banner(template), **names)
-                files.append(GeneratedFile(path=output.removesuffix(".j2"), content=_checked(text, template)))
+                files.append(
+                    GeneratedFile(path=output.removesuffix(".j2"), content=_checked(text, template))
+                )
             else:
                 files.append(GeneratedFile(path=output, content=path.read_text(encoding="ascii")))
     return _sorted_unique(files)

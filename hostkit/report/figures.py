@@ -21,7 +21,7 @@ MOST_POINTS = 3000
 
 INK = "#1f2933"
 BLUE, ORANGE, GREEN, GREY = "#1769aa", "#d9730d", "#2e7d4f", "#9aa5b1"
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "hostkit",
     "font.family": "sans-serif",

@@ -38,7 +38,7 @@ def quantise(values: Vector, si_per_count: float) -> IntArray:
 def at_full_scale(count: IntArray) -> NDArray[np.bool_]:
     """Tell which samples have an axis at the end of its range, shape ``(N,)``."""
     ends = (count >= COUNTS_PER_FULL_SCALE - 1) | (count <= -COUNTS_PER_FULL_SCALE)
-    return ends.any(axis=1)
+    return np.asarray(ends.any(axis=1))
 
 
 def to_counts(
@@ -56,4 +56,5 @@ def to_rate_and_force_g(
 ) -> tuple[Vector, Vector]:
     """Return angular rate, rad/s, and specific force, g, each of shape ``(N, 3)``."""
     g_per_count = part.m_s2_per_count(config) / STANDARD_GRAVITY_M_S2
-    return counts.gyro * part.rad_s_per_count(config), counts.accel * g_per_count
+    gyro, accel = counts.gyro.astype(np.float64), counts.accel.astype(np.float64)
+    return gyro * part.rad_s_per_count(config), accel * g_per_count

@@ -6,4 +6,6 @@ from hostkit.targets.host import HOST
 from hostkit.targets.spartan3adsp import SPARTAN3ADSP
 from hostkit.targets.target import Target
 
+__all__ = ["TARGETS", "Target"]
+
 TARGETS: Registry[Target] = Registry("target", (HOST, ATMEGA328P, SPARTAN3ADSP))

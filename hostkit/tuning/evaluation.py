@@ -7,11 +7,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import inclination_rad, to_body, up_from_tilt, wrap_rad
+from hostkit.attitude import inclination_rad, up_from_tilt, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters import FILTERS
-from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.recordings import Recording
+from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import at_full_scale, to_counts, to_rate_and_force_g
 from hostkit.tuning.objective import reference_rad

@@ -2,7 +2,7 @@
 
 import math
 import platform
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 
 import numpy as np
@@ -12,6 +12,7 @@ from hostkit import __version__
 from hostkit.errors import RecordingError
 from hostkit.filters.complementary import eta_from_tau, parameters
 from hostkit.optimisers import OPTIMISERS, SwarmResult
+from hostkit.recordings import Recording
 from hostkit.records import (
     AxisChoice,
     FilterDesign,
@@ -22,7 +23,6 @@ from hostkit.records import (
     TiltMethod,
     TuningRecord,
 )
-from hostkit.recordings import Recording
 from hostkit.sensors import SENSORS
 from hostkit.sensors.part import Range, SensorPart
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
@@ -43,7 +43,7 @@ class TuningOptions:
     """What the user decides about a tuning."""
 
     axes: AxisChoice = "both"
-    mounting: Mounting = Mounting()
+    mounting: Mounting = field(default_factory=Mounting)
     tilt: TiltMethod = "atan2"
     objective: Objective = "rmse"
     optimiser: str = "qpso"
@@ -83,8 +83,8 @@ def tune(recordings: tuple[Recording, ...], options: TuningOptions) -> TuningRes
     )
 
     def swarm_cost(log_tau: Vector) -> Vector:
-        eta = eta_from_tau(np.exp(log_tau[:, 0]), 1.0 / rate_hz)
-        return cost(streams, options.objective, eta)
+        tau_s = np.exp(log_tau[:, 0])
+        return cost(streams, options.objective, tau_s / (tau_s + 1.0 / rate_hz))
 
     swarm = OPTIMISERS[options.optimiser].minimise(
         swarm_cost,
@@ -94,7 +94,7 @@ def tune(recordings: tuple[Recording, ...], options: TuningOptions) -> TuningRes
         iterations=options.iterations,
         rng=np.random.default_rng(options.seed),
     )
-    eta = float(eta_from_tau(math.exp(swarm.x[0]), 1.0 / rate_hz))
+    eta = eta_from_tau(math.exp(swarm.x[0]), 1.0 / rate_hz)
     untuned = FilterDesign(
         filter="complementary",
         axes=options.axes,

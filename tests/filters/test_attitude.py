@@ -90,6 +90,11 @@ def test_left_handed_mounting_is_told_how_to_mend() -> None:
 
 
 def test_wrap_and_inclination() -> None:
-    np.testing.assert_allclose(wrap_rad(np.array([3 * math.pi, -math.pi, 0.1])), [-math.pi, -math.pi, 0.1])
-    ups = [up_from_tilt(np.array([a]), np.array([b])) for a, b in itertools.product((0, 1e-9), repeat=2)]
+    np.testing.assert_allclose(
+        wrap_rad(np.array([3 * math.pi, -math.pi, 0.1])), [-math.pi, -math.pi, 0.1]
+    )
+    ups = [
+        up_from_tilt(np.array([a]), np.array([b]))
+        for a, b in itertools.product((0, 1e-9), repeat=2)
+    ]
     assert inclination_rad(ups[0], ups[1])[0] == pytest.approx(1e-9, rel=1e-6)
