@@ -13,7 +13,8 @@ def write_aside(path: Path, content: bytes | str) -> None:
     Parameters
     ----------
     path
-        Where the file goes. Its folder must exist; a file of that name is replaced.
+        Where the file goes. Its folder must exist; a file of that name is replaced. What is no
+        file, such as ``/dev/null`` or a pipe, is written to and stays what it is.
     content
         The bytes, or text that is written as UTF-8 with its line ends as they are.
 
@@ -25,6 +26,9 @@ def write_aside(path: Path, content: bytes | str) -> None:
     """
     payload = content.encode("utf-8") if isinstance(content, str) else content
     target = path.resolve()
+    if target.exists() and not target.is_file():
+        _write_through(path, payload)
+        return
     try:
         temporary = _write_temporary(target, payload)
     except OSError as error:
@@ -33,6 +37,15 @@ def write_aside(path: Path, content: bytes | str) -> None:
         temporary.replace(target)
     except OSError as error:
         temporary.unlink(missing_ok=True)
+        raise _refusal(path, error) from error
+
+
+def _write_through(path: Path, payload: bytes) -> None:
+    """Write to a device or a pipe, which must not be replaced by a file."""
+    try:
+        with path.open("wb") as stream:
+            stream.write(payload)
+    except OSError as error:
         raise _refusal(path, error) from error
 
 

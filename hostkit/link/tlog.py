@@ -74,6 +74,8 @@ class TlogWriter:
     """
 
     def __init__(self, path: Path) -> None:
+        if path.exists() and not path.is_file():
+            raise HostkitError(f"{path} is no file; a recording goes to a file of its own")
         self._path = path
         self._part = path.with_name(path.name + ".part")
         try:

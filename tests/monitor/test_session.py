@@ -33,7 +33,9 @@ class FakeClock:
 class FakePort:
     """Gives its chunks one a read, each taking an eighth of a second, then silence or the end."""
 
-    def __init__(self, clock: FakeClock, chunks: list[bytes], *, live: bool = True, ends: bool = False):
+    def __init__(
+        self, clock: FakeClock, chunks: list[bytes], *, live: bool = True, ends: bool = False
+    ):
         self.clock, self.chunks, self.live, self.ends = clock, list(chunks), live, ends
 
     def read(self, timeout_s: float) -> bytes | None:
@@ -163,6 +165,8 @@ def test_impossible_port_is_one_clear_error(port: str, says: str) -> None:
 def test_unwritable_record_is_one_clear_error(tmp_path: Path) -> None:
     with pytest.raises(HostkitError, match="cannot be written"):
         TlogWriter(tmp_path / "missing" / "x.tlog")
+    with pytest.raises(HostkitError, match="no file"):
+        TlogWriter(Path("/dev/null"))
 
 
 def test_tcp_device() -> None:

@@ -26,7 +26,12 @@ def test_right_device_passes(axes: str, batch: int) -> None:
     d = design(axes=axes)
     report = judge(Device(d).frames(SAMPLES), d, batch=batch).report(Thresholds())
     assert (report.verdict, report.reasons) == ("pass", ())
-    assert (report.samples, report.checked, report.mismatches, report.lost) == (SAMPLES, SAMPLES, 0, 0)
+    assert (report.samples, report.checked, report.mismatches, report.lost) == (
+        SAMPLES,
+        SAMPLES,
+        0,
+        0,
+    )
     assert 0.0 < report.rms_rad < report.max_rad < math.radians(0.005)
 
 
@@ -90,10 +95,16 @@ def test_hostile_numbers_do_not_break_it() -> None:
     frames = []
     for _ in range(300):
         message = m.MAVLink_tilt_sample_message(
-            int(rng.integers(0, 2**63)), int(rng.choice([0, 1, 2**32 - 1, rng.integers(2**32)])),
-            int(rng.choice([-(2**31), 2**31 - 1])), int(rng.integers(-(2**31), 2**31)),
-            rng.choice([-32768, 0, 32767], 3).tolist(), rng.choice([-32768, 0, 32767], 3).tolist(),
-            0, 0, [0] * 6, int(rng.integers(256)),
+            int(rng.integers(0, 2**63)),
+            int(rng.choice([0, 1, 2**32 - 1, rng.integers(2**32)])),
+            int(rng.choice([-(2**31), 2**31 - 1])),
+            int(rng.integers(-(2**31), 2**31)),
+            rng.choice([-32768, 0, 32767], 3).tolist(),
+            rng.choice([-32768, 0, 32767], 3).tolist(),
+            0,
+            0,
+            [0] * 6,
+            int(rng.integers(256)),
         )
         frames.append(device._pack(message))
     report = judge(frames).report(Thresholds())
