@@ -61,23 +61,50 @@ def cli(ctx: click.Context) -> None:
     Defaults for a project stand in hostkit.toml, a table per command; HOSTKIT_COMMAND_OPTION in
     the environment wins over the file, the command line over both.
     """
-    ctx.default_map = _project_defaults()
+    if ctx.invoked_subcommand is not None and PROJECT_FILE.is_file():
+        table = _project_table(ctx.invoked_subcommand)
+        command = cli.get_command(ctx, ctx.invoked_subcommand)
+        if table and command is not None:
+            ctx.default_map = {ctx.invoked_subcommand: _by_parameter(command, table)}
 
 
-def _project_defaults() -> dict[str, Any]:
-    if not PROJECT_FILE.is_file():
-        return {}
+def _project_table(command: str) -> dict[str, Any]:
+    """Return what the project file says of one command.
+
+    Raises
+    ------
+    HostkitError
+        If the file is not TOML, or has something that is no table of a command.
+    """
     try:
-        defaults = tomllib.loads(PROJECT_FILE.read_text(encoding="utf-8"))
+        tables = tomllib.loads(PROJECT_FILE.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise HostkitError(f"{PROJECT_FILE} cannot be read: {error}") from error
-    for name, table in defaults.items():
+    for name, table in tables.items():
         if name not in COMMANDS or not isinstance(table, dict):
             raise HostkitError(
                 f"{PROJECT_FILE} has {name!r}; it may have one table per command: "
                 + ", ".join(COMMANDS)
             )
-    return defaults
+    found: dict[str, Any] = tables.get(command, {})
+    return found
+
+
+def _by_parameter(command: click.Command, table: dict[str, Any]) -> dict[str, Any]:
+    """Turn option names into click's parameter names; refuse those the command does not have."""
+    parameters = {
+        option.removeprefix("--").replace("-", "_"): str(parameter.name)
+        for parameter in command.params
+        for option in parameter.opts
+        if option.startswith("--")
+    }
+    for key in table:
+        if key.replace("-", "_") not in parameters:
+            raise HostkitError(
+                f"{PROJECT_FILE} has {key!r} in [{command.name}]; it may have: "
+                + ", ".join(parameters)
+            )
+    return {parameters[key.replace("-", "_")]: value for key, value in table.items()}
 
 
 def main() -> None:

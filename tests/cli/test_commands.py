@@ -29,7 +29,12 @@ def hostkit(here: Path, capfd: pytest.CaptureFixture[str]):
 
 @pytest.fixture
 def recording(hostkit, here: Path) -> str:
-    assert hostkit("simulate", "--profile", "steps", "--vibration", "2", "--duration", "8", "-o", "r.csv")[0] == 0
+    assert (
+        hostkit(
+            "simulate", "--profile", "steps", "--vibration", "2", "--duration", "8", "-o", "r.csv"
+        )[0]
+        == 0
+    )
     return "r.csv"
 
 
@@ -56,9 +61,14 @@ def test_tune_json_is_one_document_with_the_contracts_keys(hostkit, recording: s
     code, out, _ = hostkit("tune", recording, "-o", "d.json", "--seed", "7", "--json")
     document = json.loads(out)
     assert code == 0
-    wanted = "schema design digest filter parameters eta tau_s rate_hz rmse_deg evaluations optimiser seed"
+    wanted = "schema design digest filter parameters eta tau_s rate_hz rmse_deg evaluations "
+    wanted += "optimiser seed"
     assert set(wanted.split()) <= set(document)
-    assert (document["schema"], document["seed"], document["evaluations"]) == ("hostkit.tune/1", 7, 2020)
+    assert (document["schema"], document["seed"], document["evaluations"]) == (
+        "hostkit.tune/1",
+        7,
+        2020,
+    )
     assert json.loads(Path("d.json").read_text())["digest"] == document["digest"]
 
 
@@ -81,7 +91,20 @@ def test_evaluate_json(hostkit, recording: str, design: str) -> None:
 
 
 def test_single_axis_design_has_null_for_the_others(hostkit, recording: str) -> None:
-    hostkit("tune", recording, "-o", "d.json", "--axes", "pitch", "--tilt", "arcsin", "--objective", "mae", "--iterations", "5")
+    hostkit(
+        "tune",
+        recording,
+        "-o",
+        "d.json",
+        "--axes",
+        "pitch",
+        "--tilt",
+        "arcsin",
+        "--objective",
+        "mae",
+        "--iterations",
+        "5",
+    )
     _, out, _ = hostkit("evaluate", "d.json", recording, "--json")
     rmse = json.loads(out)["recordings"][0]["rmse_deg"]
     assert rmse["roll"] is None
@@ -125,7 +148,9 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "code", "says"), [b[1:] for b in BAD], ids=[b[0] for b in BAD])
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"), [b[1:] for b in BAD], ids=[b[0] for b in BAD]
+)
 def test_bad_use_is_one_clear_line_with_its_exit_code(
     hostkit, design: str, arguments: tuple[str, ...], code: int, says: str
 ) -> None:
@@ -186,9 +211,18 @@ def test_project_file_environment_and_command_line(hostkit, monkeypatch, recordi
     assert (document["seed"], document["evaluations"]) == (7, 100)
 
 
-@pytest.mark.parametrize("text", ["[nonsense]\n", "tune = 1\n", "[tune\n"])
+def test_project_file_takes_the_names_of_the_options(hostkit) -> None:
+    Path("hostkit.toml").write_text("[simulate]\nduration = 3.0\ngyro-range = '250'\n")
+    code, out, _ = hostkit("simulate", "--profile", "rest", "-o", "r.csv", "--json")
+    assert (code, json.loads(out)["samples"]) == (0, 300)
+
+
+@pytest.mark.parametrize(
+    "text", ["[nonsense]\n", "tune = 1\n", "[tune\n", "[tune]\naxis = 'roll'\n"]
+)
 def test_broken_project_file_is_one_clear_line(hostkit, text: str) -> None:
     Path("hostkit.toml").write_text(text)
+    Path("x.csv").touch()
     code, _, err = hostkit("tune", "x.csv")
     assert code == 1
     assert "hostkit.toml" in err
@@ -218,6 +252,12 @@ def test_missing_tools_are_exit_code_5(hostkit, design: str, monkeypatch, tmp_pa
 def test_closed_output_is_no_traceback(design: str) -> None:
     command = f"{sys.executable} -m hostkit evaluate --help | head -c 1 >/dev/null"
     done = subprocess.run(
-        command, shell=True, capture_output=True, text=True, timeout=60, env=dict(os.environ), check=False
+        command,
+        shell=True,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=dict(os.environ),
+        check=False,
     )
     assert "Traceback" not in done.stderr
