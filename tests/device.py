@@ -43,8 +43,16 @@ class Device:
         for k in range(samples):
             messages.append(
                 m.MAVLink_tilt_sample_message(
-                    k * 10_000, k, int(angles[k, 0]), int(angles[k, 1]), accel[k].tolist(),
-                    gyro[k].tolist(), 0, 0, list(bytes.fromhex(self.digest)), int(k == 0),
+                    k * 10_000,
+                    k,
+                    int(angles[k, 0]),
+                    int(angles[k, 1]),
+                    accel[k].tolist(),
+                    gyro[k].tolist(),
+                    0,
+                    0,
+                    list(bytes.fromhex(self.digest)),
+                    int(k == 0),
                 )
             )
         return [self._pack(message) for message in messages]

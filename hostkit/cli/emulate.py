@@ -140,6 +140,7 @@ def emulation_document(
         "cycles_per_update": {"mean": result.cycles_mean, "max": result.cycles_max},
         "flash_bytes": sizes and sizes.flash_bytes,
         "ram_bytes": sizes and sizes.ram_bytes,
+        "stack_bytes": result.stack_bytes,
         "faults": dict(result.faults),
     }
 
@@ -154,6 +155,9 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
     if result.cycles_mean is not None:
         click.echo(f"cycles per update: {result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max")
     if isinstance(built, BuildResult) and built.flash_bytes is not None:
-        click.echo(f"image: {built.flash_bytes} bytes of flash, {built.ram_bytes} of static RAM")
+        click.echo(
+            f"image: {built.flash_bytes} bytes of flash, {built.ram_bytes} of static RAM, "
+            f"{result.stack_bytes} of stack"
+        )
     for name, count in result.faults:
         click.echo(f"fault {name}: {count}")

@@ -47,6 +47,8 @@ class EmulationResult:
         Device minus float model, shape ``(samples, A)``.
     cycles_mean, cycles_max
         Clock cycles of a filter update; None where nothing counts them.
+    stack_bytes
+        Deepest stack; None where nothing measures it.
     faults
         What went wrong on the board, by name.
     """
@@ -58,6 +60,7 @@ class EmulationResult:
     residual_rad: Vector
     cycles_mean: float | None
     cycles_max: float | None
+    stack_bytes: int | None
     faults: tuple[tuple[str, int], ...]
 
     def __post_init__(self) -> None:
@@ -84,6 +87,7 @@ class _Answer:
     angle_raw: IntArray
     cycles_mean: float | None
     cycles_max: float | None
+    stack_bytes: int | None = None
     faults: tuple[tuple[str, int], ...] = ()
 
 
@@ -207,6 +211,7 @@ def _run(
         angle_raw=trace.angle_raw,
         cycles_mean=run.cycles_mean,
         cycles_max=run.cycles_max,
+        stack_bytes=run.stack_bytes,
         faults=run.faults,
     )
 
@@ -240,5 +245,6 @@ def _compare(
         residual_rad=wrap_rad(answer.angle_raw * RAD_PER_HALF_TURN_LSB - exact[row]),
         cycles_mean=answer.cycles_mean,
         cycles_max=answer.cycles_max,
+        stack_bytes=answer.stack_bytes,
         faults=answer.faults,
     )

@@ -33,7 +33,11 @@ SAMPLES = (
     Sample(
         "paper-arcsin",
         design(
-            axes="pitch", tilt="arcsin", eta=0.412, rate_hz=20.0, gyro_full_scale_deg_s=2000,
+            axes="pitch",
+            tilt="arcsin",
+            eta=0.412,
+            rate_hz=20.0,
+            gyro_full_scale_deg_s=2000,
             low_pass_setting=5,
         ),
     ),

@@ -81,7 +81,11 @@ def test_python_gives_the_committed_vectors(sample: Sample) -> None:
 def test_committed_c_gives_the_committed_vectors(sample: Sample, host_cc, tmp_path: Path) -> None:
     counts, response = committed_vectors(sample)
     code = sample.folder / "host"
-    sources = (Path(__file__).with_name("vector_main.c"), code / "hk_filter.c", code / "hk_cordic.c")
+    sources = (
+        Path(__file__).with_name("vector_main.c"),
+        code / "hk_filter.c",
+        code / "hk_cordic.c",
+    )
     program = host_cc.build(tmp_path / "vectors", f"-I{code}", *sources)
     text = "\n".join(" ".join(map(str, row)) for row in counts)
     done = subprocess.run(

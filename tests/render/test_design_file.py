@@ -63,7 +63,13 @@ HOSTILE = {
     "mounting": ["+x+y-z", "*/int x;", 7],
     "rate_hz": ["100", True, 0, -1, 1e9, None, [100]],
     "sensor": [{}, None, "mpu6050"],
-    "parameters": [None, [], {"eta": 0.5}, {"e ta": {"value": 1, "unit": "1"}}, {"eta": {"value": "x", "unit": "1"}}],
+    "parameters": [
+        None,
+        [],
+        {"eta": 0.5},
+        {"e ta": {"value": 1, "unit": "1"}},
+        {"eta": {"value": "x", "unit": "1"}},
+    ],
     "tuning": [{}, [], "none"],
     "schema": ["hostkit.design/2", None],
     "extra": [1],
@@ -86,7 +92,9 @@ def test_hostile_sensor_value_is_refused(key: str) -> None:
         from_document(document)
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"eta": NaN}', "\ud83d\ude00", "[" * 100_000])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "null", '{"eta": NaN}', "\ud83d\ude00", "[" * 100_000]
+)
 def test_what_is_not_a_design_is_refused(text: str, tmp_path: Path) -> None:
     path = tmp_path / "design.json"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
@@ -96,7 +104,9 @@ def test_what_is_not_a_design_is_refused(text: str, tmp_path: Path) -> None:
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3)
+    ),
     max_leaves=8,
 )
 

@@ -44,8 +44,17 @@ def test_template_computes_nothing(path: Path) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["{{ a + b }}", "{{ a * 2 }}", "{{ -a }}", "{{ a ~ b }}", "{{ a | round }}", "{{ f(a) }}",
-     "{% set a = 1 %}", "{{ 2 ** a }}", "{{ a // b }}"],
+    [
+        "{{ a + b }}",
+        "{{ a * 2 }}",
+        "{{ -a }}",
+        "{{ a ~ b }}",
+        "{{ a | round }}",
+        "{{ f(a) }}",
+        "{% set a = 1 %}",
+        "{{ 2 ** a }}",
+        "{{ a // b }}",
+    ],
 )
 def test_check_finds_computation(text: str) -> None:
     assert computing_nodes(text)

@@ -1,0 +1,50 @@
+/* made by hostkit 0.1.0 from design 975f50245cf2; do not edit; template complementary/hk_filter.c.j2 */
+#include "hk_filter.h"
+
+#include "hk_cordic.h"
+#include "hk_fixed.h"
+
+/* Body axes from sensor axes; a count is widened first, because -(-32768) is no int16_t. */
+#define HK_BODY_X(count) ((int32_t)(count)[0])
+#define HK_BODY_Y(count) ((int32_t)(count)[1])
+#define HK_BODY_Z(count) ((int32_t)(count)[2])
+
+void hk_filter_init(hk_filter_t *filter)
+{
+    filter->angle[HK_ROLL] = 0;
+    filter->angle[HK_PITCH] = 0;
+    filter->primed = 0U;
+}
+
+/* Tilt from specific force, half turns. */
+static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
+{
+    tilt[HK_PITCH] = hk_arcsin(-HK_BODY_X(accel_count), INT32_C(16384));
+}
+
+/* Predict with the rate, correct with the wrapped difference to the measured tilt. */
+static int32_t hk_blend(int32_t angle, int32_t rate_count, int32_t tilt)
+{
+    const int32_t step =
+        (int32_t)hk_shift_round((int64_t)rate_count * HK_RATE_GAIN_RAW, HK_RATE_GAIN_FRAC);
+    const int32_t predicted = hk_wrap_add(angle, step);
+    const int32_t innovation = hk_wrap_sub(tilt, predicted);
+    const int32_t correction =
+        (int32_t)hk_shift_round((int64_t)innovation * HK_BLEND_RAW, HK_BLEND_FRAC);
+
+    return hk_wrap_add(predicted, correction);
+}
+
+bool hk_filter_update(hk_filter_t *filter, const int16_t accel_count[3],
+                      const int16_t gyro_count[3])
+{
+    int32_t tilt[HK_ANGLES] = {0, 0};
+    const bool load = filter->primed == 0U;
+
+    hk_measure(accel_count, tilt);
+    filter->angle[HK_PITCH] =
+        load ? tilt[HK_PITCH]
+             : hk_blend(filter->angle[HK_PITCH], HK_BODY_Y(gyro_count), tilt[HK_PITCH]);
+    filter->primed = 1U;
+    return load;
+}

@@ -1,0 +1,30 @@
+/* made by hostkit 0.1.0 from design 00e52f7c2b01; do not edit; template complementary/hk_filter.h.j2 */
+#ifndef HK_FILTER_H
+#define HK_FILTER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Angles are signed 32-bit half turns: one unit is pi / 2^31 rad, overflow is the wrap at +-pi. */
+#define HK_ROLL 0
+#define HK_PITCH 1
+#define HK_ANGLES 2
+
+#define HK_RATE_GAIN_RAW  INT32_C(116508)  /* 1820.4444444444448 half turns / 2^31 per count, s11.6 */
+#define HK_RATE_GAIN_FRAC 6
+#define HK_BLEND_RAW  INT32_C(117441)  /* 0.0034999999999999476 1, s-8.25 */
+#define HK_BLEND_FRAC 25
+
+typedef struct {
+    int32_t angle[HK_ANGLES]; /* roll, pitch; an axis that the design does not have stays 0 */
+    uint8_t primed;           /* 0 until the first sample has loaded the measured tilt */
+} hk_filter_t;
+
+void hk_filter_init(hk_filter_t *filter);
+
+/* Take one sample of raw counts in sensor axes. Returns true if the sample loaded the measured tilt
+ * instead of stepping, which the first one after hk_filter_init does. */
+bool hk_filter_update(hk_filter_t *filter, const int16_t accel_count[3],
+                      const int16_t gyro_count[3]);
+
+#endif

@@ -1,0 +1,124 @@
+"""What an emulated board takes and gives: the records that all boards share."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.errors import EmulationError
+from hostkit.records import read_only
+
+Vector = NDArray[np.float64]
+Progress = Callable[[int], None]
+Send = Callable[[bytes], None]
+Stop = Callable[[], bool]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorFaults:
+    """What goes wrong on the virtual sensor.
+
+    Attributes
+    ----------
+    who_am_i
+        The identity it answers with; None is its own.
+    nack
+        So many addressings are not acknowledged.
+    hold_sda_clocks
+        The data line is held low until so many clocks have come.
+    from_row
+        The last two begin when so many rows have been played.
+    """
+
+    who_am_i: int | None = None
+    nack: int = 0
+    hold_sda_clocks: int = 0
+    from_row: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stimulus:
+    """What the virtual sensor feels, one row per output sample, in sensor axes.
+
+    Attributes
+    ----------
+    angular_rate_rad_s, specific_force_m_s2
+        Each of shape ``(N, 3)``.
+    temperature_deg_c
+        Shape ``(N,)``.
+    settle_samples
+        Samples that the driver drops after it has enabled data-ready. So often row 0 is played
+        before the table begins, so that the first sample that is not dropped is row 0.
+    loop
+        Whether the table starts again at its end. `run` needs an end; `serve` always loops.
+    faults
+        What goes wrong.
+    """
+
+    angular_rate_rad_s: Vector
+    specific_force_m_s2: Vector
+    temperature_deg_c: Vector
+    settle_samples: int = 0
+    loop: bool = False
+    faults: SensorFaults = SensorFaults()
+
+    def __post_init__(self) -> None:
+        """Refuse shapes that do not belong together and values that are not finite."""
+        samples = len(self.angular_rate_rad_s)
+        for name, array, shape in (
+            ("angular_rate_rad_s", self.angular_rate_rad_s, (samples, 3)),
+            ("specific_force_m_s2", self.specific_force_m_s2, (samples, 3)),
+            ("temperature_deg_c", self.temperature_deg_c, (samples,)),
+        ):
+            if array.shape != shape or samples == 0:
+                raise EmulationError(f"{name} has the shape {array.shape}; it must be {shape}, N>0")
+            if not np.isfinite(array).all():
+                raise EmulationError(f"{name} holds a value that is not finite")
+            read_only(array)
+
+    def __len__(self) -> int:
+        return len(self.angular_rate_rad_s)
+
+    def table(self) -> bytes:
+        """Return the rows as the virtual sensor reads them: seven little-endian float64 each."""
+        columns = (
+            self.angular_rate_rad_s,
+            self.specific_force_m_s2,
+            self.temperature_deg_c[:, None],
+        )
+        return np.hstack(columns).astype("<f8").tobytes()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoardRun:
+    """What a board did with a stimulus.
+
+    Attributes
+    ----------
+    stream
+        Every byte of its link.
+    cycles_mean, cycles_max
+        Clock cycles of one filter update without interrupts; None where nothing counts them.
+    stack_bytes
+        Deepest stack; None where nothing measures it.
+    faults
+        What went wrong, by name: ``unread_samples`` that the firmware did not read in time,
+        ``stalled`` if it stopped taking samples.
+    """
+
+    stream: bytes
+    cycles_mean: float | None = None
+    cycles_max: float | None = None
+    stack_bytes: int | None = None
+    faults: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuildResult:
+    """A built image: the file, and what it takes in flash and static RAM (None on a host)."""
+
+    artifact: Path
+    flash_bytes: int | None = None
+    ram_bytes: int | None = None

@@ -1,1 +1,0 @@
-from hostkit.dialect import *  # noqa

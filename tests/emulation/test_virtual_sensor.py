@@ -1,0 +1,406 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from boards import generated, require_or_skip
+
+from hostkit.emulation.board import Stimulus
+from hostkit.emulation.virtual_sensor import NEVER, VirtualSensor, compile_shared
+from hostkit.sensors import SENSORS
+from hostkit.sensors.counts import quantise
+
+MS = 1_000_000
+ADDRESS = 0x68
+SMPLRT_DIV, CONFIG, GYRO_CONFIG, ACCEL_CONFIG = 0x19, 0x1A, 0x1B, 0x1C
+INT_PIN_CFG, INT_ENABLE, INT_STATUS, BURST = 0x37, 0x38, 0x3A, 0x3B
+SIGNAL_PATH_RESET, POWER, WHO_AM_I = 0x68, 0x6B, 0x75
+PART = SENSORS["mpu6050"]
+
+
+def table(rows: int = 20, settle: int = 0, *, loop: bool = False) -> Stimulus:
+    rng = np.random.default_rng(11)
+    return Stimulus(
+        angular_rate_rad_s=rng.normal(0.0, 2.0, (rows, 3)),
+        specific_force_m_s2=rng.normal(0.0, 9.0, (rows, 3)),
+        temperature_deg_c=rng.uniform(-20.0, 60.0, rows),
+        settle_samples=settle,
+        loop=loop,
+    )
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    require_or_skip("gcc")
+    folder = generated("host", tmp_path_factory.mktemp("model"))
+    compile_shared(folder, folder / "sensor.so")
+    return folder / "sensor.so"
+
+
+class Bench:
+    """A bus master in front of a sensor; every call also lets a little time pass."""
+
+    def __init__(self, library: Path, feels: Stimulus) -> None:
+        self.sensor = VirtualSensor(library, feels)
+        self.feels = feels
+        self.now = 0
+
+    def wait(self, ns: int) -> None:
+        self.now += ns
+        self.sensor.advance(self.now)
+
+    def write(self, register: int, *values: int) -> bool:
+        ok = self.sensor.start(ADDRESS, read=False) and self.sensor.write(register)
+        ok = ok and all(self.sensor.write(value) for value in values)
+        self.sensor.stop()
+        return ok
+
+    def read(self, register: int, count: int = 1) -> list[int]:
+        assert self.sensor.start(ADDRESS, read=False)
+        assert self.sensor.write(register)
+        assert self.sensor.start(ADDRESS, read=True)
+        values = [self.sensor.read() for _ in range(count)]
+        self.sensor.stop()
+        return values
+
+    def burst(self) -> list[int]:
+        """Accel x, y, z, temperature, gyro x, y, z."""
+        data = bytes(self.read(BURST, 14))
+        return np.frombuffer(data, dtype=">i2").astype(int).tolist()
+
+    def expected(self, row: int, *, gyro: int = 0, accel: int = 0) -> list[int]:
+        f = self.feels
+        force, rate = PART.accel_ranges[accel], PART.gyro_ranges[gyro]
+        counts_force = quantise(f.specific_force_m_s2[row], PART.accel_m_s2_per_count(force))
+        counts_rate = quantise(f.angular_rate_rad_s[row], PART.gyro_rad_s_per_count(rate))
+        temperature = int(np.floor(f.temperature_deg_c[row] * 340 - 12420 + 0.5))
+        return [*counts_force.tolist(), temperature, *counts_rate.tolist()]
+
+    def configure(self, *, divider: int = 9, pin: int = 0x30) -> None:
+        """Awake, settled, 1 kHz / (1 + divider), data-ready not yet enabled."""
+        assert self.write(POWER, 0x01)
+        self.wait(100 * MS)
+        for register, value in ((CONFIG, 3), (SMPLRT_DIV, divider), (INT_PIN_CFG, pin)):
+            assert self.write(register, value)
+
+    def enable(self) -> None:
+        assert self.write(INT_ENABLE, 0x01)
+
+
+@pytest.fixture
+def bench(library: Path) -> Bench:
+    return Bench(library, table())
+
+
+def test_reset_values(bench: Bench) -> None:
+    assert bench.read(WHO_AM_I) == [0x68]
+    assert bench.read(POWER) == [0x40]
+    for register in PART.registers:
+        assert bench.read(register.address) == [register.reset_value], register.name
+
+
+def test_answers_to_its_address_only(bench: Bench) -> None:
+    assert bench.sensor.start(0x68, read=False)
+    bench.sensor.stop()
+    for address in (0x00, 0x34, 0x67, 0x69, 0x7F):
+        assert not bench.sensor.start(address, read=False)
+        assert not bench.sensor.write(0x6B)
+        assert bench.sensor.read() == 0xFF
+
+
+def test_asleep_after_power_up_and_no_sample_until_awake(bench: Bench) -> None:
+    assert bench.sensor.next_event_ns == NEVER
+    bench.write(INT_ENABLE, 1)
+    bench.wait(1000 * MS)
+    assert not bench.sensor.int_pin
+    assert bench.burst() == [0] * 7
+    bench.write(POWER, 0x01)
+    bench.wait(29 * MS)
+    assert bench.sensor.rows_played == 0
+    bench.wait(3 * MS)
+    assert bench.sensor.rows_played > 0
+
+
+def test_sleep_stops_samples(bench: Bench) -> None:
+    bench.configure()
+    bench.enable()
+    bench.wait(35 * MS)
+    played = bench.sensor.rows_played
+    assert played == 3
+    bench.write(POWER, 0x41)
+    bench.wait(500 * MS)
+    assert bench.sensor.rows_played == played
+    assert bench.sensor.next_event_ns == NEVER
+
+
+def test_gyroscope_is_not_to_be_believed_before_the_pll_has_settled(bench: Bench) -> None:
+    bench.write(POWER, 0x01)
+    bench.wait(35 * MS)
+    assert bench.burst()[4:] == [0x5555] * 3
+    assert bench.burst()[:4] == bench.expected(0)[:4]
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(0)
+
+
+def test_device_reset_takes_time_and_clears_itself(bench: Bench) -> None:
+    bench.configure()
+    bench.write(GYRO_CONFIG, 0x18)
+    assert bench.write(POWER, 0x80)
+    assert not bench.sensor.start(ADDRESS, read=False), "deaf at first"
+    bench.wait(2 * MS)
+    assert bench.read(POWER) == [0x80]
+    bench.write(GYRO_CONFIG, 0x10)
+    assert bench.read(GYRO_CONFIG) == [0], "writes are lost meanwhile"
+    bench.wait(100 * MS)
+    assert bench.read(POWER) == [0x40]
+    assert bench.read(GYRO_CONFIG) == [0]
+    assert bench.read(SMPLRT_DIV) == [0]
+
+
+def test_signal_path_reset_clears_the_data_and_is_not_kept(bench: Bench) -> None:
+    bench.configure()
+    bench.wait(50 * MS)
+    assert bench.burst() == bench.expected(0)
+    bench.write(SIGNAL_PATH_RESET, 0x07)
+    assert bench.burst() == [0] * 7
+    assert bench.read(SIGNAL_PATH_RESET) == [0]
+
+
+def test_address_increments_over_reads_and_writes(bench: Bench) -> None:
+    bench.write(SMPLRT_DIV, 1, 2, 0x08, 0x10)
+    assert bench.read(SMPLRT_DIV, 4) == [1, 2, 0x08, 0x10]
+    assert bench.read(GYRO_CONFIG) == [0x08]
+
+
+@pytest.mark.parametrize("register", [INT_STATUS, BURST, BURST + 13, WHO_AM_I, 0x00, 0x7F])
+def test_registers_that_cannot_be_written_stay(bench: Bench, register: int) -> None:
+    before = bench.read(register)
+    bench.write(register, 0xA5)
+    assert bench.read(register) == before
+
+
+@pytest.mark.parametrize("gyro", range(4))
+@pytest.mark.parametrize("accel", range(4))
+def test_counts_follow_the_range_registers(bench: Bench, gyro: int, accel: int) -> None:
+    bench.write(GYRO_CONFIG, gyro << 3)
+    bench.write(ACCEL_CONFIG, accel << 3)
+    bench.configure()
+    bench.enable()
+    for row in range(20):
+        bench.wait(10 * MS)
+        assert bench.burst() == bench.expected(row, gyro=gyro, accel=accel)
+
+
+def test_extreme_values_saturate(library: Path) -> None:
+    limit = 250 * np.pi / 180
+    rows = np.array([[1e9, -1e9, 0.0], [limit, -limit, limit * 32766.4 / 32768], [-1e-9, 1e-9, 0]])
+    feels = replace(table(3), angular_rate_rad_s=rows)
+    bench = Bench(library, feels)
+    bench.configure()
+    bench.enable()
+    got = []
+    for _ in range(3):
+        bench.wait(10 * MS)
+        got.append(bench.burst()[4:])
+    assert got == [[32767, -32768, 0], [32767, -32768, 32766], [0, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("low_pass", "divider", "period_ns"),
+    [(0, 0, 125_000), (0, 7, MS), (1, 0, MS), (3, 9, 10 * MS), (6, 255, 256 * MS), (7, 3, 500_000)],
+)
+def test_sample_rate(library: Path, low_pass: int, divider: int, period_ns: int) -> None:
+    bench = Bench(library, table(8))
+    bench.configure()
+    bench.write(CONFIG, low_pass)
+    bench.write(SMPLRT_DIV, divider)
+    bench.enable()
+    for row in range(8):
+        bench.wait(period_ns - 1)
+        assert bench.sensor.rows_played == row
+        bench.wait(1)
+        assert bench.sensor.rows_played == row + 1
+
+
+def test_burst_is_one_sampling_instant(bench: Bench) -> None:
+    bench.configure()
+    bench.enable()
+    bench.wait(10 * MS)
+    sensor = bench.sensor
+    sensor.start(ADDRESS, read=False)
+    sensor.write(BURST)
+    sensor.start(ADDRESS, read=True)
+    data = []
+    for i in range(14):
+        data.append(sensor.read())
+        if i == 5:
+            bench.wait(10 * MS)
+            assert not sensor.int_pin, "the next sample waits for the end of the transaction"
+    sensor.stop()
+    assert np.frombuffer(bytes(data), dtype=">i2").tolist() == bench.expected(0)
+    assert sensor.int_pin
+    assert bench.burst() == bench.expected(1)
+    assert sensor.unread_samples == 0
+
+
+def test_samples_nobody_read_are_counted(bench: Bench) -> None:
+    bench.configure()
+    bench.enable()
+    bench.wait(40 * MS)
+    assert bench.sensor.unread_samples == 3
+    assert bench.burst() == bench.expected(3)
+
+
+def test_int_latched_until_status_is_read(library: Path) -> None:
+    bench = Bench(library, table())
+    bench.configure(pin=0x20)
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.sensor.int_pin
+    bench.burst()
+    assert bench.sensor.int_pin, "only reading INT_STATUS clears it"
+    assert bench.read(INT_STATUS) == [1]
+    assert not bench.sensor.int_pin
+    assert bench.read(INT_STATUS) == [0]
+
+
+def test_int_latched_until_any_read(library: Path) -> None:
+    bench = Bench(library, table())
+    bench.configure(pin=0x30)
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.sensor.int_pin
+    bench.read(WHO_AM_I)
+    assert not bench.sensor.int_pin
+    assert bench.read(INT_STATUS) == [0]
+
+
+def test_int_pulse(library: Path) -> None:
+    bench = Bench(library, table())
+    bench.configure(pin=0x00)
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.sensor.int_pin
+    bench.burst()
+    assert bench.sensor.int_pin
+    bench.wait(49_999)
+    assert bench.sensor.int_pin
+    bench.wait(1)
+    assert not bench.sensor.int_pin
+
+
+def test_int_active_low(library: Path) -> None:
+    bench = Bench(library, table())
+    bench.configure(pin=0xB0)
+    bench.enable()
+    assert bench.sensor.int_pin
+    bench.wait(10 * MS)
+    assert not bench.sensor.int_pin
+    bench.burst()
+    assert bench.sensor.int_pin
+
+
+def test_no_interrupt_unless_enabled(bench: Bench) -> None:
+    bench.configure()
+    bench.wait(100 * MS)
+    assert not bench.sensor.int_pin
+    assert bench.read(INT_STATUS) == [0]
+    assert bench.burst() == bench.expected(0)
+
+
+def test_settle_samples_come_before_the_table(library: Path) -> None:
+    bench = Bench(library, table(6, settle=3))
+    bench.configure()
+    bench.wait(1000 * MS)
+    assert bench.burst() == bench.expected(0), "row 0 until data-ready is enabled"
+    bench.enable()
+    rows = []
+    for _ in range(9):
+        bench.wait(10 * MS)
+        assert bench.sensor.int_pin
+        rows.append(bench.burst())
+    wanted = [0, 0, 0, *range(6)]
+    assert rows == [bench.expected(row) for row in wanted]
+
+
+def test_enabling_while_a_sample_waits_adds_none(library: Path) -> None:
+    bench = Bench(library, table(3, settle=1))
+    bench.configure()
+    bench.wait(9 * MS)
+    sensor = bench.sensor
+    sensor.start(ADDRESS, read=False)
+    sensor.write(INT_ENABLE)
+    bench.wait(1 * MS)  # a sample comes while the enabling is on its way
+    sensor.write(0x01)
+    sensor.stop()
+    assert not sensor.int_pin
+    rows = []
+    for _ in range(4):
+        bench.wait(10 * MS)
+        rows.append(bench.burst())
+    assert rows == [bench.expected(row) for row in (0, 0, 1, 2)]
+
+
+def test_a_restart_plays_on_where_it_was(library: Path) -> None:
+    bench = Bench(library, table(6, settle=2))
+    rows = []
+    for samples in (4, 6):
+        bench.write(POWER, 0x80)
+        bench.wait(100 * MS)
+        bench.configure()
+        bench.enable()
+        for _ in range(samples):
+            bench.wait(10 * MS)
+            rows.append(bench.burst())
+    assert rows == [bench.expected(row) for row in (0, 0, 0, 1, 2, 2, 2, 3, 4, 5)]
+
+
+def test_table_ends(library: Path) -> None:
+    bench = Bench(library, table(2))
+    bench.configure()
+    bench.enable()
+    bench.wait(20 * MS)
+    assert bench.sensor.rows_played == 2
+    assert not bench.sensor.exhausted, "the last row has not been read"
+    bench.burst()
+    assert bench.sensor.exhausted
+    bench.wait(1000 * MS)
+    assert not bench.sensor.int_pin
+    assert bench.sensor.next_event_ns == NEVER
+
+
+def test_table_loops(library: Path) -> None:
+    bench = Bench(library, table(3, loop=True))
+    bench.configure()
+    bench.enable()
+    for k in range(7):
+        bench.wait(10 * MS)
+        assert bench.burst() == bench.expected(k % 3)
+    assert bench.sensor.rows_played == 7
+    assert not bench.sensor.exhausted
+
+
+def test_nack_on_demand(bench: Bench) -> None:
+    bench.sensor.nack_next(2)
+    assert not bench.write(CONFIG, 1)
+    assert not bench.sensor.start(ADDRESS, read=True)
+    assert bench.write(CONFIG, 1)
+    assert bench.read(CONFIG) == [1]
+
+
+def test_sda_is_freed_by_clocks(bench: Bench) -> None:
+    bench.sensor.hold_sda(6)
+    for _ in range(6):
+        assert bench.sensor.sda_low
+        assert not bench.sensor.start(ADDRESS, read=False)
+        bench.sensor.clock()
+    assert not bench.sensor.sda_low
+    assert bench.read(WHO_AM_I) == [0x68]
+
+
+def test_identity_on_demand_survives_a_reset(bench: Bench) -> None:
+    bench.sensor.set_identity(0x70)
+    assert bench.read(WHO_AM_I) == [0x70]
+    bench.write(POWER, 0x80)
+    bench.wait(100 * MS)
+    assert bench.read(WHO_AM_I) == [0x70]

@@ -1,0 +1,79 @@
+import subprocess
+from pathlib import Path
+
+import pytest
+from boards import generated, require_or_skip
+from designs import design
+
+from hostkit.emulation.make import make
+
+WARNINGS = (
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wshadow",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Werror",
+)
+BOARD_CODE = ("main.c", "hk_hal_host.c")
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("standard", ["c99", "gnu11"])
+@pytest.mark.parametrize("axes", ["both", "roll", "pitch"])
+def test_compiles_without_a_warning(
+    tmp_path: Path, compiler: str, standard: str, axes: str
+) -> None:
+    require_or_skip(compiler)
+    folder = generated("host", tmp_path / "code", design(axes=axes))
+    for source in sorted(folder.glob("*.c")):
+        posix = ("-D_POSIX_C_SOURCE=200809L",) if source.name in BOARD_CODE else ()
+        command = [
+            compiler,
+            f"-std={standard}",
+            *WARNINGS,
+            *posix,
+            "-fsyntax-only",
+            "-isystem",
+            str(folder / "mavlink"),
+            str(source),
+        ]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(("target", "tool"), [("host", "gcc"), ("atmega328p", "avr-gcc")])
+def test_makefile_builds_without_a_warning(tmp_path: Path, target: str, tool: str) -> None:
+    require_or_skip("make", tool)
+    make(generated(target, tmp_path / "code"), "WERROR=1")
+
+
+def test_application_allocates_nothing_and_keeps_its_state_in_one_struct(tmp_path: Path) -> None:
+    """The portable objects have no writable data and call no allocator."""
+    require_or_skip("gcc")
+    folder = generated("host", tmp_path / "code")
+    for source in sorted(folder.glob("hk_*.c")):
+        if source.name in BOARD_CODE:
+            continue
+        output = tmp_path / f"{source.stem}.o"
+        subprocess.run(
+            [
+                "gcc",
+                "-O2",
+                "-c",
+                "-isystem",
+                str(folder / "mavlink"),
+                "-o",
+                str(output),
+                str(source),
+            ],
+            check=True,
+            timeout=60,
+        )
+        symbols = subprocess.run(
+            ["nm", str(output)], capture_output=True, text=True, check=True, timeout=20
+        ).stdout.splitlines()
+        kinds = {line.split()[-1]: line.split()[-2] for line in symbols}
+        assert not {name for name, kind in kinds.items() if kind in "bBdDC"}, source.name
+        assert not {"malloc", "calloc", "realloc", "free"} & set(kinds), source.name
