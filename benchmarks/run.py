@@ -20,7 +20,8 @@ from hostkit.emulation.run import stimulus_of
 from hostkit.errors import ToolMissingError
 from hostkit.filters.complementary import lower, parameters, run_float, run_integer
 from hostkit.link.decoder import Decoder
-from hostkit.records import FilterDesign, Mounting, SensorConfig
+from hostkit.mounting import Mounting
+from hostkit.records import FilterDesign, SensorConfig
 from hostkit.render import generate, write
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import to_counts, to_rate_and_force_g
@@ -92,10 +93,10 @@ def bench_tuning() -> None:
     row("tune: QPSO / scipy bounded Brent, time", f"{ratio(qpso, brent):.1f}", "below 1 is faster")
     row(
         "tune: evaluations, QPSO and Brent",
-        f"{ours.swarm.evaluations}/{peer.nfev}",  # type: ignore[attr-defined]
+        f"{ours.swarm.evaluations}/{peer.nfev}",
         "with one parameter no swarm is needed",
     )
-    excess = ours.swarm.cost / peer.fun - 1.0  # type: ignore[attr-defined]
+    excess = ours.swarm.cost / peer.fun - 1.0
     row("tune: cost, QPSO over Brent", f"{excess:+.1e}", "relative; below 0 is better")
 
 

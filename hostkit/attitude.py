@@ -12,7 +12,7 @@ A positive rate about x raises roll; a positive rate about y raises pitch.
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.records import Mounting
+from hostkit.mounting import Mounting
 
 Vector = NDArray[np.float64]
 

@@ -15,12 +15,12 @@ from typing import Any
 
 from hostkit.errors import DesignError
 from hostkit.files import write_aside
+from hostkit.mounting import Mounting
 from hostkit.records import (
     AXES,
     OBJECTIVES,
     TILT_METHODS,
     FilterDesign,
-    Mounting,
     Parameter,
     RecordingDigest,
     SensorConfig,

@@ -1,7 +1,8 @@
 """Designs that tests share."""
 
 from hostkit.filters.complementary import parameters
-from hostkit.records import AxisChoice, FilterDesign, Mounting, SensorConfig, TiltMethod
+from hostkit.mounting import Mounting
+from hostkit.records import AxisChoice, FilterDesign, SensorConfig, TiltMethod
 
 
 def design(

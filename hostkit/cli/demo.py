@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -135,7 +136,7 @@ def run_demo(out: Path, seed: int) -> DemoResult:
     for target in TARGETS:
         found = steps.attempt(
             target.name,
-            lambda target=target: _emulate(target, tuning.design, other, out),  # type: ignore[misc]
+            partial(_emulate, target, tuning.design, other, out),
         )
         if found is not None:
             emulations.append(found)

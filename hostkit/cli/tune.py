@@ -10,16 +10,9 @@ from hostkit.cli.output import emit_json
 from hostkit.design_file import digest, save_design
 from hostkit.errors import DesignError
 from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS
-from hostkit.records import (
-    AXES,
-    OBJECTIVES,
-    TILT_METHODS,
-    AxisChoice,
-    Mounting,
-    Objective,
-    TiltMethod,
-)
+from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
 from hostkit.sensors import SENSORS
 from hostkit.tuning import TuningOptions, TuningResult, sensor_config
 from hostkit.tuning import tune as run_tuning
@@ -163,16 +156,16 @@ def tune(
     )
     result = run_tuning(recordings, options)
     save_design(result.design, output)
-    if report_file is not None:
-        from hostkit.report import write_tuning_report
-
-        write_tuning_report(result, report_file)
     if result.swarm.at_bound.any():
         say("tau lies on the edge of its range: the recordings do not determine it")
     if as_json:
         emit_json(tuning_document(result, output))
     else:
         _show(result, output)
+    if report_file is not None:
+        from hostkit.report import write_tuning_report
+
+        write_tuning_report(result, report_file)
 
 
 def tuning_document(result: TuningResult, output: Path) -> dict[str, object]:

@@ -8,7 +8,8 @@ from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.cordic import ROOT_FRACTION_BITS
 from hostkit.fixedpoint import Coefficient
-from hostkit.records import FilterDesign, FixedPointSpec, Mounting
+from hostkit.mounting import Mounting
+from hostkit.records import FilterDesign, FixedPointSpec
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.part import Range, Register, RegisterWrite

@@ -19,8 +19,9 @@ from scipy.signal import lfilter
 from hostkit.attitude import pitch_from_up, roll_from_up, to_body, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters.complementary import RATE_AXIS, measured_tilt_rad
+from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AXES, Axis, AxisChoice, Mounting, Objective, TiltMethod
+from hostkit.records import AXES, Axis, AxisChoice, Objective, TiltMethod
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]

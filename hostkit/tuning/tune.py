@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from hostkit import __version__
 from hostkit.errors import RecordingError
 from hostkit.filters.complementary import eta_from_tau, parameters
+from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS, SwarmResult
 from hostkit.recordings import Recording
 from hostkit.records import (
     AxisChoice,
     FilterDesign,
-    Mounting,
     Objective,
     RecordingDigest,
     SensorConfig,

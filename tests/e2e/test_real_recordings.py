@@ -10,8 +10,9 @@ from hostkit.cli.main import run
 from hostkit.emulation.run import build, emulate
 from hostkit.errors import ToolMissingError
 from hostkit.filters.complementary import parameters
+from hostkit.mounting import Mounting
 from hostkit.recordings import Recording, load
-from hostkit.records import FilterDesign, Mounting
+from hostkit.records import FilterDesign
 from hostkit.render import generate, write
 from hostkit.targets import TARGETS
 from hostkit.tuning import sensor_config

@@ -14,7 +14,7 @@ from hostkit.attitude import (
     wrap_rad,
 )
 from hostkit.errors import DesignError
-from hostkit.records import Mounting
+from hostkit.mounting import Mounting
 
 FACES = {
     "z up": ((0, 0, 1), 0.0, 0.0),

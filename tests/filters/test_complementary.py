@@ -18,7 +18,7 @@ from hostkit.filters.complementary import (
     step_integer,
     tau_from_eta,
 )
-from hostkit.records import Mounting
+from hostkit.mounting import Mounting
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import to_counts, to_rate_and_force_g
 from hostkit.units import RAD_PER_HALF_TURN_LSB, STANDARD_GRAVITY_M_S2

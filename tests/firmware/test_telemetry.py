@@ -11,7 +11,7 @@ from hostkit.attitude import up_from_tilt
 from hostkit.design_file import digest
 from hostkit.emulation import host_board
 from hostkit.emulation.board import Stimulus
-from hostkit.records import Mounting
+from hostkit.mounting import Mounting
 from hostkit.units import RAD_PER_HALF_TURN_LSB, STANDARD_GRAVITY_M_S2
 
 N = 40

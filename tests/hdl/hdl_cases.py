@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from hostkit.emulation import ghdl
 from hostkit.filters.complementary import lower, run_integer
-from hostkit.records import AXES, AxisChoice, FilterDesign, Mounting
+from hostkit.mounting import Mounting
+from hostkit.records import AXES, AxisChoice, FilterDesign
 from hostkit.render import render_target, write
 from hostkit.targets import TARGETS
 

@@ -23,7 +23,7 @@ FLOORS = (
     ("recordings",),
     ("attitude",),
     ("design_file",),
-    ("records", "registry", "fixedpoint", "units", "errors", "files"),
+    ("records", "mounting", "registry", "fixedpoint", "units", "errors", "files"),
 )
 """From top to bottom; an import may only point down, or stay within its room."""
 

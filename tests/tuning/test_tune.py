@@ -8,8 +8,9 @@ from designs import design
 from hostkit.attitude import up_from_tilt, wrap_rad
 from hostkit.errors import HostkitError, RecordingError
 from hostkit.filters.complementary import parameters, run_float
+from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AXES, Mounting
+from hostkit.records import AXES
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.tuning import TuningOptions, evaluate, mean_rms_rad, sensor_config, tune
 from hostkit.tuning.objective import cost, prepare, reference_rad
