@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from hostkit.sensors.part import COUNTS_PER_FULL_SCALE
+from hostkit.sensors.counts import quantise
 from hostkit.simulation.curves import multisine
 from hostkit.simulation.sensor_errors import SensorErrors, Triple
 
@@ -99,15 +99,10 @@ def measure(
         sigma = _sigma_s(channel) * sampling.fine_rate_hz
         fine = np.asarray(gaussian_filter1d(fine, sigma, axis=0, truncate=FILTER_REACH))
     sampled: Vector = fine[margin : margin + steps : sampling.oversampling]
-    return counted(sampled, channel.unit_per_count) if errors.counts else sampled.copy()
-
-
-def counted(values: Vector, unit_per_count: float) -> Vector:
-    """Return values clipped to 16 bits of counts and rounded, halves upwards, in their unit."""
-    counts = np.floor(values / unit_per_count + 0.5)
-    limit = COUNTS_PER_FULL_SCALE
-    clipped: Vector = np.clip(counts, -limit, limit - 1)
-    return clipped * unit_per_count
+    if not errors.counts:
+        return sampled.copy()
+    counts = quantise(sampled, channel.unit_per_count).astype(np.float64)
+    return counts * channel.unit_per_count
 
 
 def oversampling(rate_hz: float, bandwidth_hz: float) -> int:

@@ -10,11 +10,11 @@ from hostkit.errors import DesignError, HostkitError
 from hostkit.recordings import Recording, check, load, save
 from hostkit.records import SensorConfig
 from hostkit.sensors import SENSORS
+from hostkit.sensors.counts import quantise
 from hostkit.simulation import PROFILES, SensorErrors, at_rest, simulate
 from hostkit.simulation.curves import Curve, constant, multisine, ramp, stairs, sweep
 from hostkit.simulation.motion import Path as Path3d
 from hostkit.simulation.motion import motion_at
-from hostkit.simulation.sensor_model import counted
 from hostkit.units import DEG_PER_RAD, RAD_PER_DEG, STANDARD_GRAVITY_M_S2
 
 PART = SENSORS["mpu6050"]
@@ -240,7 +240,7 @@ def test_too_fast_a_motion_is_clipped_and_found() -> None:
 
 def test_counts_round_halves_upwards() -> None:
     values = np.array((0.5, -0.5, 1.49, -1.5, 40000.0, -40000.0))
-    np.testing.assert_array_equal(counted(values, 1.0), (1, 0, 1, -1, 32767, -32768))
+    np.testing.assert_array_equal(quantise(values, 1.0), (1, 0, 1, -1, 32767, -32768))
 
 
 def test_constant_errors_are_what_was_asked_for() -> None:
