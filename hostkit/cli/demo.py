@@ -39,6 +39,7 @@ SENSOR = SensorConfig(
 )
 LIVE_S = 5.0
 PTY_WAIT_S = 60.0
+LEFT_OUT = "left out"
 LIVE_TARGETS = ("atmega328p", "host")
 """Boards to watch live, the best first."""
 
@@ -68,7 +69,7 @@ class Steps:
         try:
             return self.run(name, action)
         except ToolMissingError as error:
-            self.done[-1] = Step(name=name, ok=True, detail=f"left out: {error}")
+            self.done[-1] = Step(name=name, ok=True, detail=f"{LEFT_OUT}: {error}")
             return None
 
     def _finish(self, name: str, ok: bool, detail: str, begun: float) -> None:
@@ -116,7 +117,9 @@ def demo(out: Path, seed: int, as_json: bool) -> None:
             }
         )
     else:
-        click.echo(f"report: {report}\nverdict: {result.verdict}")
+        left_out = [step.name for step in result.steps if step.detail.startswith(LEFT_OUT)]
+        remark = f" (left out: {', '.join(left_out)})" if left_out else ""
+        click.echo(f"report: {report}\nverdict: {result.verdict}{remark}")
     if result.verdict != "pass":
         raise VerdictError("the demo did not pass; the report says where")
 

@@ -28,7 +28,9 @@ def doctor(strict: bool, as_json: bool) -> None:
         for state in states:
             click.echo(_line(state))
         click.echo(
-            "everything is installed" if not missing else "`make setup` installs what is missing"
+            "everything is installed"
+            if not missing
+            else "in a checkout `make setup` installs what is missing, where it may"
         )
     if strict and missing:
         names = ", ".join(state.tool.name for state in missing)

@@ -14,7 +14,7 @@ from hostkit.emulation.board import Send, Stop
 from hostkit.errors import DeviceError
 
 POLL_S = 0.05
-SLOW_READER_S = 0.2
+SLOW_READER_S = 1.0
 """How long the port waits for a reader that does not keep up; then bytes are lost, as on a wire."""
 
 Serve = Callable[[Send, Stop], None]

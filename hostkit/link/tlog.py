@@ -79,7 +79,7 @@ class TlogWriter:
         self._path = path
         self._part = path.with_name(path.name + ".part")
         try:
-            self._file = self._part.open("wb")
+            self._file = self._part.open("wb", buffering=0)
         except OSError as error:
             raise HostkitError(f"{self._part} cannot be written: {error.strerror}") from error
 
@@ -93,7 +93,6 @@ class TlogWriter:
     def close(self) -> None:
         """Finish the file and give it its name."""
         try:
-            self._file.flush()
             os.fsync(self._file.fileno())
             self._file.close()
             self._part.replace(self._path)

@@ -3,42 +3,34 @@
 
 #include "hk_fixed.h"
 
-#define HK_CORDIC_STEPS 20
 #define HK_CORDIC_GUARD 12
 #define HK_CORDIC_GAIN_RAW  INT32_C(53961)  /* 1.646760258120067, s1.15 */
 #define HK_CORDIC_GAIN_FRAC 15
 #define HK_ROOT_FRAC 8
 
-/* round(atan(2^-i) / pi * 2^31) */
-static const int32_t hk_cordic_angle[HK_CORDIC_STEPS] = {
-    INT32_C(536870912),
-    INT32_C(316933406),
-    INT32_C(167458907),
-    INT32_C(85004756),
-    INT32_C(42667331),
-    INT32_C(21354465),
-    INT32_C(10679838),
-    INT32_C(5340245),
-    INT32_C(2670163),
-    INT32_C(1335087),
-    INT32_C(667544),
-    INT32_C(333772),
-    INT32_C(166886),
-    INT32_C(83443),
-    INT32_C(41722),
-    INT32_C(20861),
-    INT32_C(10430),
-    INT32_C(5215),
-    INT32_C(2608),
-    INT32_C(1304),
-};
+/* One micro-rotation towards the x axis, by `turn` = round(atan(2^-i) / pi * 2^31). The steps are
+ * written out, because a processor without a barrel shifter shifts by a constant much faster. */
+#define HK_CORDIC_STEP(i, turn)               \
+    do {                                      \
+        const int32_t x_part = x >> (i);      \
+        const int32_t y_part = y >> (i);      \
+                                              \
+        if (y >= 0) {                         \
+            x += y_part;                      \
+            y -= x_part;                      \
+            angle += (uint32_t)INT32_C(turn); \
+        } else {                              \
+            x -= y_part;                      \
+            y += x_part;                      \
+            angle -= (uint32_t)INT32_C(turn); \
+        }                                     \
+    } while (0)
 
 /* Rotate (x, y) onto the positive x axis; x becomes its length times the gain. */
 static int32_t hk_vectoring(int32_t y, int32_t *x_in_length_out)
 {
     int32_t x = *x_in_length_out;
     uint32_t angle = 0U;
-    uint8_t i;
 
     if (x == 0 && y == 0) {
         return 0;
@@ -48,20 +40,26 @@ static int32_t hk_vectoring(int32_t y, int32_t *x_in_length_out)
         y = -y;
         angle = UINT32_C(0x80000000);
     }
-    for (i = 0U; i < HK_CORDIC_STEPS; i++) {
-        const int32_t x_part = x >> i;
-        const int32_t y_part = y >> i;
-
-        if (y >= 0) {
-            x += y_part;
-            y -= x_part;
-            angle += (uint32_t)hk_cordic_angle[i];
-        } else {
-            x -= y_part;
-            y += x_part;
-            angle -= (uint32_t)hk_cordic_angle[i];
-        }
-    }
+    HK_CORDIC_STEP(0, 536870912);
+    HK_CORDIC_STEP(1, 316933406);
+    HK_CORDIC_STEP(2, 167458907);
+    HK_CORDIC_STEP(3, 85004756);
+    HK_CORDIC_STEP(4, 42667331);
+    HK_CORDIC_STEP(5, 21354465);
+    HK_CORDIC_STEP(6, 10679838);
+    HK_CORDIC_STEP(7, 5340245);
+    HK_CORDIC_STEP(8, 2670163);
+    HK_CORDIC_STEP(9, 1335087);
+    HK_CORDIC_STEP(10, 667544);
+    HK_CORDIC_STEP(11, 333772);
+    HK_CORDIC_STEP(12, 166886);
+    HK_CORDIC_STEP(13, 83443);
+    HK_CORDIC_STEP(14, 41722);
+    HK_CORDIC_STEP(15, 20861);
+    HK_CORDIC_STEP(16, 10430);
+    HK_CORDIC_STEP(17, 5215);
+    HK_CORDIC_STEP(18, 2608);
+    HK_CORDIC_STEP(19, 1304);
     *x_in_length_out = x;
     return (int32_t)angle;
 }

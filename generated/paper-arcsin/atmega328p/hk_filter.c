@@ -9,6 +9,12 @@
 #define HK_BODY_Y(count) ((int32_t)(count)[1])
 #define HK_BODY_Z(count) ((int32_t)(count)[2])
 
+/* What hk_scale_count and hk_scale_angle ask for. */
+typedef char hk_formats_fit[(HK_RATE_GAIN_FRAC >= 1 && HK_RATE_GAIN_FRAC <= 15
+                             && HK_BLEND_FRAC >= 16)
+                                ? 1
+                                : -1];
+
 void hk_filter_init(hk_filter_t *filter)
 {
     filter->angle[HK_ROLL] = 0;
@@ -25,12 +31,10 @@ static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
 /* Predict with the rate, correct with the wrapped difference to the measured tilt. */
 static int32_t hk_blend(int32_t angle, int32_t rate_count, int32_t tilt)
 {
-    const int32_t step =
-        (int32_t)hk_shift_round((int64_t)rate_count * HK_RATE_GAIN_RAW, HK_RATE_GAIN_FRAC);
+    const int32_t step = hk_scale_count(rate_count, HK_RATE_GAIN_RAW, HK_RATE_GAIN_FRAC);
     const int32_t predicted = hk_wrap_add(angle, step);
     const int32_t innovation = hk_wrap_sub(tilt, predicted);
-    const int32_t correction =
-        (int32_t)hk_shift_round((int64_t)innovation * HK_BLEND_RAW, HK_BLEND_FRAC);
+    const int32_t correction = hk_scale_angle(innovation, HK_BLEND_RAW, HK_BLEND_FRAC);
 
     return hk_wrap_add(predicted, correction);
 }
