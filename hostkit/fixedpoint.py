@@ -29,16 +29,6 @@ class QFormat:
     width: int
     fraction_bits: int
 
-    @property
-    def raw_max(self) -> int:
-        """Largest integer the format holds."""
-        return int(2 ** (self.width - 1)) - 1
-
-    @property
-    def raw_min(self) -> int:
-        """Smallest integer the format holds."""
-        return -int(2 ** (self.width - 1))
-
     def __str__(self) -> str:
         return f"s{self.width - 1 - self.fraction_bits}.{self.fraction_bits}"
 

@@ -23,7 +23,6 @@ class DesignContext:
     digest: str
     digest_bytes: tuple[int, ...]
     version: str
-    filter: str
     rate_hz: str
     period_us: int
 
@@ -54,11 +53,9 @@ class SensorContext:
     sleep: int = mpu6050.SLEEP
     clock_pll: int = mpu6050.CLOCK_PLL_GYRO_X
     signal_path_reset: int = mpu6050.SIGNAL_PATH_RESET_ALL
-    int_latched: int = mpu6050.INT_LATCHED_CLEARED_BY_ANY_READ
     data_ready: int = mpu6050.DATA_READY
     burst_bytes: int = mpu6050.BURST_BYTES
     temperature_counts_per_deg_c: int = mpu6050.TEMPERATURE_COUNTS_PER_DEG_C
-    temperature_offset_deg_c: float = mpu6050.TEMPERATURE_OFFSET_DEG_C
     temperature_offset_counts: int = round(
         mpu6050.TEMPERATURE_COUNTS_PER_DEG_C * mpu6050.TEMPERATURE_OFFSET_DEG_C
     )
@@ -130,7 +127,6 @@ def _design_context(design: FilterDesign) -> DesignContext:
         digest=name,
         digest_bytes=tuple(bytes.fromhex(name)),
         version=__version__,
-        filter=design.filter,
         rate_hz=repr(design.rate_hz),
         period_us=round(1e6 * design.period_s),
     )

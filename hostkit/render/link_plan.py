@@ -30,7 +30,7 @@ class LinkPlan:
     baud: int
     heartbeat_ms: int
     attitude_every: int
-    bytes_per_s: float
+    bytes_per_s: int
 
 
 def link_plan(rate_hz: float, target: Target) -> LinkPlan:
@@ -63,5 +63,5 @@ def link_plan(rate_hz: float, target: Target) -> LinkPlan:
         baud=target.baud,
         heartbeat_ms=HEARTBEAT_MS,
         attitude_every=attitude_every,
-        bytes_per_s=needed,
+        bytes_per_s=math.ceil(needed),
     )
