@@ -39,7 +39,7 @@
 #define HK_COMPONENT_ID   1U
 #define HK_VEHICLE_TYPE   0U
 #define HK_AUTOPILOT      0U
-#define HK_LINK_BAUD      500000 /* telemetry takes 1921 bytes/s of it */
+#define HK_LINK_BAUD      500000 /* bit/s; telemetry takes 1921 bytes/s */
 #define HK_HEARTBEAT_US   (UINT32_C(1000) * 1000U)
 #define HK_ATTITUDE_EVERY 1U
 
