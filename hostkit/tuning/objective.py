@@ -10,6 +10,7 @@ It equals the wrapped filter exactly as long as no innovation exceeds half a tur
 is reported of a finished design comes from the filter itself.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,27 +22,32 @@ from hostkit.errors import RecordingError
 from hostkit.filters.complementary import RATE_AXIS, measured_tilt_rad
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AXES, Axis, AxisChoice, Objective, TiltMethod
+from hostkit.records import AXES, Axis, AxisChoice, Objective, TiltMethod, read_only
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorStreams:
-    """One row per recording and axis, padded with zeros to a common length.
+class ErrorStream:
+    """One axis of one recording.
 
     Attributes
     ----------
     drive, start
-        c and v above, shape ``(S, N)``.
+        c and v above, shape ``(N,)``.
     scored
-        1 where a sample counts, else 0, shape ``(S, N)``.
+        Samples that count, shape ``(N,)``.
     """
 
     drive: Vector
     start: Vector
-    scored: Vector
+    scored: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for array in (self.drive, self.start, self.scored):
+            read_only(array)
 
 
 def prepare(
@@ -51,23 +57,19 @@ def prepare(
     tilt: TiltMethod,
     mounting: Mounting,
     period_s: float,
-) -> ErrorStreams:
-    """Lay recordings out for :func:`cost`.
+) -> tuple[ErrorStream, ...]:
+    """Lay recordings out for :func:`cost`, a stream for each recording and axis.
 
     Raises
     ------
     RecordingError
         If a recording has no reference, or no sample of it can be scored.
     """
-    rows = [
-        _row(recording, axis, tilt, mounting, period_s)
+    return tuple(
+        _stream(recording, axis, tilt, mounting, period_s)
         for recording in recordings
         for axis in AXES[axes]
-    ]
-    length = max(len(drive) for drive, _, _ in rows)
-    padded = [[np.pad(column, (0, length - len(column))) for column in row] for row in rows]
-    drive, start, scored = (np.stack(columns) for columns in zip(*padded, strict=True))
-    return ErrorStreams(drive=drive, start=start, scored=scored)
+    )
 
 
 def reference_rad(recording: Recording, axis: Axis, mounting: Mounting) -> Vector:
@@ -87,9 +89,9 @@ def reference_rad(recording: Recording, axis: Axis, mounting: Mounting) -> Vecto
     return roll_from_up(up) if axis == "roll" else pitch_from_up(up)
 
 
-def _row(
+def _stream(
     recording: Recording, axis: Axis, tilt: TiltMethod, mounting: Mounting, period_s: float
-) -> tuple[Vector, Vector, Vector]:
+) -> ErrorStream:
     reference = reference_rad(recording, axis, mounting)
     scored = recording.valid & np.isfinite(reference)
     if not scored.any():
@@ -103,10 +105,10 @@ def _row(
     start = wrap_rad(measured_tilt_rad(axis, tilt, force_g) - reference)
     drive = rate * period_s - wrap_rad(np.diff(reference, prepend=reference[0])) - start
     drive[0] = 0.0
-    return drive, start, scored.astype(np.float64)
+    return ErrorStream(drive=drive, start=start, scored=scored)
 
 
-def cost(streams: ErrorStreams, objective: Objective, eta: Vector) -> Vector:
+def cost(streams: tuple[ErrorStream, ...], objective: Objective, eta: Vector) -> Vector:
     """Return the cost of each eta, rad, shape ``(P,)``: the mean over recordings and axes.
 
     Every recording counts the same, however long it is.
@@ -118,12 +120,12 @@ def cost(streams: ErrorStreams, objective: Objective, eta: Vector) -> Vector:
     eta
         Weights of the integrated rate, shape ``(P,)``.
     """
-    return np.array([_cost(streams, objective, float(value)) for value in eta])
+    costs = [[_cost(stream, objective, float(value)) for stream in streams] for value in eta]
+    return np.asarray(np.mean(costs, axis=1))
 
 
-def _cost(streams: ErrorStreams, objective: Objective, eta: float) -> float:
-    error = lfilter([1.0], [1.0, -eta], eta * streams.drive + streams.start)
-    samples = streams.scored.sum(axis=1)
+def _cost(stream: ErrorStream, objective: Objective, eta: float) -> float:
+    error = lfilter([1.0], [1.0, -eta], eta * stream.drive + stream.start)[stream.scored]
     if objective == "mae":
-        return float(np.mean((streams.scored * np.abs(error)).sum(axis=1) / samples))
-    return float(np.mean(np.sqrt((streams.scored * error * error).sum(axis=1) / samples)))
+        return float(np.mean(np.abs(error)))
+    return math.sqrt(float(np.vdot(error, error)) / len(error))
