@@ -228,7 +228,7 @@ class _Reader:
         value = self.value(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self._wrong(key, "a number")
-        if not math.isfinite(value) or abs(value) > 1e18:
+        if abs(value) > 1e18 or not math.isfinite(value):
             raise self._wrong(key, "a finite number")
         return float(value)
 

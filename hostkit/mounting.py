@@ -60,10 +60,10 @@ class Mounting:
     def all(cls) -> tuple["Mounting", ...]:
         """Return the 24 mountings."""
         found = []
-        for source in permutations((0, 1, 2)):
-            for sign in product((1, -1), repeat=3):
+        for source in permutations((0, 1, 2), 3):
+            for x, y, z in product((1, -1), repeat=3):
                 try:
-                    found.append(cls(source=source, sign=sign))  # type: ignore[arg-type]
+                    found.append(cls(source=source, sign=(x, y, z)))
                 except DesignError:
                     continue
         return tuple(found)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
+from hostkit.errors import HostkitError
 from hostkit.filters import FILTERS
 from hostkit.records import AngleTrace, FilterDesign, ValidationReport
 from hostkit.sensors import SENSORS
@@ -30,6 +31,13 @@ class Thresholds:
 
     max_rms_deg: float = DEFAULT_MAX_RMS_DEG
     max_lost_share: float = DEFAULT_MAX_LOST_SHARE
+
+    def __post_init__(self) -> None:
+        """Refuse a threshold that nothing can exceed, or everything does."""
+        for name in ("max_rms_deg", "max_lost_share"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise HostkitError(f"{name} = {value}; it must be a finite number, 0 or more")
 
 
 class Validator:

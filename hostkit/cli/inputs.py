@@ -1,5 +1,6 @@
 """Reading what the command line names: recordings with their sanity card, and designs."""
 
+import math
 from pathlib import Path
 
 import click
@@ -21,6 +22,13 @@ DESIGN = click.argument(
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+
+
+def finite(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
+    """Refuse NaN and infinity, which pass click's range check: nothing would exceed them."""
+    if value is not None and not math.isfinite(value):
+        raise click.BadParameter(f"{value} is not a finite number")
+    return value
 
 
 def say(message: str) -> None:

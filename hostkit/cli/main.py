@@ -1,7 +1,6 @@
 """The entry point: finds the subcommand, reads the project file, turns errors into one line."""
 
 import importlib
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -133,8 +132,4 @@ def run(arguments: list[str]) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("hostkit: interrupted", err=True)
         return INTERRUPTED
-    except BrokenPipeError:
-        # Whoever read our output has gone; nothing is left to say, and nobody to say it to.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
     return 0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import DESIGN, JSON, read_design, say
+from hostkit.cli.inputs import DESIGN, JSON, finite, read_design, say
 from hostkit.cli.output import emit_json
 from hostkit.errors import VerdictError
 from hostkit.link.tlog import TlogWriter
@@ -32,6 +32,7 @@ PROGRESS_EVERY_S = 1.0
     "--duration",
     "duration_s",
     type=click.FloatRange(min=0.0, min_open=True),
+    callback=finite,
     metavar="S",
     help="Seconds to look at the device; without it until Ctrl-C or the end of a file.",
 )
@@ -45,6 +46,7 @@ PROGRESS_EVERY_S = 1.0
 @click.option(
     "--max-rms-deg",
     type=click.FloatRange(min=0.0),
+    callback=finite,
     default=DEFAULT_MAX_RMS_DEG,
     show_default=True,
     metavar="X",
@@ -53,6 +55,7 @@ PROGRESS_EVERY_S = 1.0
 @click.option(
     "--max-lost-percent",
     type=click.FloatRange(0.0, 100.0),
+    callback=finite,
     default=100.0 * DEFAULT_MAX_LOST_SHARE,
     show_default=True,
     metavar="X",

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from hostkit.cli.inputs import finite
 from hostkit.cli.output import emit_json
 from hostkit.errors import HostkitError
 from hostkit.recordings import SUFFIXES, Recording, check, save
@@ -30,12 +31,6 @@ def _suffixed(context: click.Context, option: click.Parameter, path: Path) -> Pa
     return path
 
 
-def _finite(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not np.isfinite(value):
-        raise click.BadParameter(f"{value} is not a finite number")
-    return value
-
-
 @click.command("simulate", short_help="Make a recording from a motion profile.")
 @click.option(
     "-o",
@@ -57,7 +52,7 @@ def _finite(context: click.Context, option: click.Parameter, value: float | None
     "--duration",
     "duration_s",
     type=click.FloatRange(min=0.0, min_open=True),
-    callback=_finite,
+    callback=finite,
     default=60.0,
     show_default=True,
     metavar="S",
@@ -67,7 +62,7 @@ def _finite(context: click.Context, option: click.Parameter, value: float | None
     "--rate",
     "rate_hz",
     type=click.FloatRange(min=0.0, max=PART.sample_base_rate_hz, min_open=True),
-    callback=_finite,
+    callback=finite,
     default=100.0,
     show_default=True,
     metavar="HZ",
@@ -105,7 +100,7 @@ def _finite(context: click.Context, option: click.Parameter, value: float | None
     "--gyro-bias",
     "gyro_bias_deg_s",
     type=click.FloatRange(-MAX_GYRO_BIAS_DEG_S, MAX_GYRO_BIAS_DEG_S),
-    callback=_finite,
+    callback=finite,
     metavar="DEG_S",
     help="Gyroscope offset on all axes, instead of some tenths of a deg/s.",
 )
@@ -113,7 +108,7 @@ def _finite(context: click.Context, option: click.Parameter, value: float | None
     "--vibration",
     "vibration_m_s2",
     type=click.FloatRange(0.0, MAX_VIBRATION_M_S2),
-    callback=_finite,
+    callback=finite,
     default=0.0,
     show_default=True,
     metavar="M_S2",

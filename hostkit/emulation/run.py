@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hostkit.attitude import wrap_rad
 from hostkit.design_file import digest
 from hostkit.emulation import avr_board, ghdl, host_board
-from hostkit.emulation.board import BuildResult, Stimulus
+from hostkit.emulation.board import BoardRun, BuildResult, Send, Stimulus, Stop
 from hostkit.errors import EmulationError, HostkitError
 from hostkit.filters import FILTERS
 from hostkit.link.decoder import Decoder, trace_of
@@ -27,8 +27,24 @@ Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Progress = Callable[[int], None]
 
-BOARDS: dict[str, ModuleType] = {"host": host_board, "atmega328p": avr_board}
-"""Emulated boards of the microcontroller targets, each with ``build``, ``run`` and ``serve``."""
+
+class Board(Protocol):
+    """What the module of an emulated board offers."""
+
+    def build(self, folder: Path) -> BuildResult:
+        """Build a generated folder."""
+
+    def run(
+        self, folder: Path, stimulus: Stimulus, *, progress: Progress | None = None
+    ) -> BoardRun:
+        """Play a stimulus to its end."""
+
+    def serve(self, folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
+        """Play a stimulus over and over in real time."""
+
+
+BOARDS: dict[str, Board] = {"host": host_board, "atmega328p": avr_board}
+"""Emulated boards of the microcontroller targets."""
 
 ROOM_TEMPERATURE_DEG_C = 25.0
 
@@ -103,11 +119,10 @@ def build(folder: Path, target: Target) -> BuildResult | tuple[str, ...]:
     """
     if target.kind == "fpga":
         return ghdl.analyse(folder)
-    result: BuildResult = board_of(target).build(folder)
-    return result
+    return board_of(target).build(folder)
 
 
-def board_of(target: Target) -> ModuleType:
+def board_of(target: Target) -> Board:
     """Return the emulated board of a target.
 
     Raises

@@ -62,8 +62,12 @@ def checked_eta(design: FilterDesign) -> float:
     Raises
     ------
     DesignError
-        If it is outside (0, 1), or its time constant is longer than a million samples.
+        If it is outside (0, 1), its time constant is longer than a million samples, or the
+        design has a parameter that this filter does not.
     """
+    strange = [p.name for p in design.parameters if p.name != "eta"]
+    if strange:
+        raise DesignError(f"the complementary filter has no parameter {strange[0]!r}; it has: eta")
     eta = design.parameter("eta")
     if not 0.0 < eta < 1.0:
         raise DesignError(f"eta = {eta} is outside the open interval (0, 1)")

@@ -86,7 +86,7 @@ def _explain(port: str, error: Exception) -> str:
     number = getattr(error, "errno", None)
     if number == errno.ENOENT:
         return (
-            f"port {port} does not exist; `python -m serial.tools.list_ports` lists those that do"
+            f"port {port!r} does not exist; `python -m serial.tools.list_ports` lists those that do"
         )
     if number == errno.EACCES:
         return (
@@ -142,8 +142,12 @@ def _listen(text: str) -> socket.socket:
     try:
         family = socket.getaddrinfo(host, number, type=socket.SOCK_DGRAM)[0][0]
         listener = socket.socket(family, socket.SOCK_DGRAM)
+    except OSError as error:
+        raise DeviceError(f"udp:{text} cannot be listened on: {error}") from error
+    try:
         listener.bind((host, number))
     except OSError as error:
+        listener.close()
         raise DeviceError(f"udp:{text} cannot be listened on: {error}") from error
     return listener
 

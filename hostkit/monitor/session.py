@@ -106,7 +106,7 @@ class Session:
                 data = self.transport.read(POLL_S)
                 now = self.clock.monotonic()
                 if data is None:
-                    self._require_end(first_sample)
+                    self._require_end()
                     break
                 if self._take(data):
                     last_sample = now
@@ -159,7 +159,7 @@ class Session:
             self._source = frame.source
         return frame.source == self._source
 
-    def _require_end(self, first_sample: float | None) -> None:
+    def _require_end(self) -> None:
         if self.transport.live:
             raise DeviceError(
                 f"the device went away after {self.validator.samples} samples; "

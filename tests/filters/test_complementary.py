@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,12 +14,14 @@ from hostkit.filters.complementary import (
     lower,
     measured_tilt_rad,
     measured_tilt_raw,
+    parameters,
     run_float,
     run_integer,
     step_integer,
     tau_from_eta,
 )
 from hostkit.mounting import Mounting
+from hostkit.records import Parameter
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import to_counts, to_rate_and_force_g
 from hostkit.units import RAD_PER_HALF_TURN_LSB, STANDARD_GRAVITY_M_S2
@@ -147,3 +150,9 @@ def test_rate_gain_at_its_limit_is_lowered_or_refused() -> None:
         lower(design(rate_hz=limit_hz * (1 + 2e-6), gyro_full_scale_deg_s=2000))
     spec = lower(design(rate_hz=limit_hz * 1.001, gyro_full_scale_deg_s=2000))
     assert spec.rate_gain.format.fraction_bits == 1
+
+
+def test_parameter_that_the_filter_does_not_have_is_refused() -> None:
+    more = (*parameters(0.97), Parameter(name="beta", value=1.0, unit="1"))
+    with pytest.raises(DesignError, match="beta"):
+        lower(replace(design(), parameters=more))

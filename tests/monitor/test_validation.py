@@ -5,6 +5,7 @@ import pytest
 from designs import design
 from device import Device
 
+from hostkit.errors import HostkitError
 from hostkit.link.decoder import Decoder, trace_of
 from hostkit.records import AXES
 from hostkit.validation import Thresholds, Validator
@@ -110,3 +111,11 @@ def test_hostile_numbers_do_not_break_it() -> None:
     report = judge(frames).report(Thresholds())
     assert report.samples == 300
     assert report.verdict == "fail"
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0])
+def test_thresholds_are_numbers_that_can_be_exceeded(value: float) -> None:
+    with pytest.raises(HostkitError, match="max_rms_deg"):
+        Thresholds(max_rms_deg=value)
+    with pytest.raises(HostkitError, match="max_lost_share"):
+        Thresholds(max_lost_share=value)

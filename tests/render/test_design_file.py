@@ -61,7 +61,7 @@ HOSTILE = {
     "axes": ["yaw", "both\n", ["roll"], None],
     "tilt": ["atan", {}],
     "mounting": ["+x+y-z", "*/int x;", 7],
-    "rate_hz": ["100", True, 0, -1, 1e9, None, [100]],
+    "rate_hz": ["100", True, 0, -1, 1e9, 10**400, -(10**400), None, [100]],
     "sensor": [{}, None, "mpu6050"],
     "parameters": [
         None,
