@@ -2,7 +2,7 @@
 
 import os
 import subprocess
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -49,6 +49,15 @@ class Compiler:
         command = ["gcc", *STRICT_C, *SANITIZERS, "-O1", "-o", str(output)]
         subprocess.run([*command, *map(str, arguments)], check=True, timeout=120)
         return output
+
+    @staticmethod
+    def run(program: Path, rows: Iterable[Iterable[object]]) -> list[list[str]]:
+        """Feed rows of words to a program; give the words of each line it prints."""
+        text = "\n".join(" ".join(map(str, row)) for row in rows)
+        done = subprocess.run(
+            [program], input=text, capture_output=True, text=True, check=True, timeout=60
+        )
+        return [line.split() for line in done.stdout.splitlines()]
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import struct
 from collections.abc import Generator
 from pathlib import Path
@@ -13,6 +14,8 @@ STAMP = struct.Struct(">Q")
 MAGIC_V2 = 0xFD
 MAGIC_V1 = 0xFE
 LONGEST_FRAME_BYTES = 280
+CHUNK_BYTES = 65536
+_MAGIC = re.compile(b"[\xfd\xfe]")
 
 
 def read_tlog(path: Path) -> Generator[bytes, None, None]:
@@ -35,31 +38,39 @@ def read_tlog(path: Path) -> Generator[bytes, None, None]:
 
 def _frames(file: BinaryIO, path: Path) -> Generator[bytes, None, None]:
     with file:
-        window = file.read(65536)
-        if len(window) <= STAMP.size or window[STAMP.size] not in (MAGIC_V1, MAGIC_V2):
+        window, begin = file.read(CHUNK_BYTES), 0
+        if _MAGIC.match(window, STAMP.size) is None:
             raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
-        while window:
-            if len(window) < STAMP.size + LONGEST_FRAME_BYTES:
-                window += file.read(65536)
-            frame = _frame_at(window)
-            if frame is None:
-                window = window[1:]
-                continue
-            yield frame
-            window = window[STAMP.size + len(frame) :]
+        while True:
+            if len(window) - begin < STAMP.size + LONGEST_FRAME_BYTES:
+                window, begin = window[begin:] + file.read(CHUNK_BYTES), 0
+            if len(window) - begin <= STAMP.size:
+                return
+            frame = _frame_at(window, begin + STAMP.size)
+            if frame is not None:
+                yield frame
+                begin += STAMP.size + len(frame)
+            else:
+                begin = _next_stamp(window, begin)
 
 
-def _frame_at(window: bytes) -> bytes | None:
-    """Return the frame behind a time stamp, or None if there is no whole one."""
-    head = window[STAMP.size : STAMP.size + 3]
+def _frame_at(window: bytes, begin: int) -> bytes | None:
+    """Return the frame that begins there, or None if there is no whole one."""
+    head = window[begin : begin + 3]
     if len(head) < 3 or head[0] not in (MAGIC_V1, MAGIC_V2):
         return None
     if head[0] == MAGIC_V1:
         length = 8 + head[1]
     else:
         length = 12 + head[1] + (13 if head[2] & 1 else 0)
-    frame = window[STAMP.size : STAMP.size + length]
+    frame = window[begin : begin + length]
     return frame if len(frame) == length else None
+
+
+def _next_stamp(window: bytes, begin: int) -> int:
+    """Return the next place at which a time stamp may stand before a frame."""
+    found = _MAGIC.search(window, begin + STAMP.size + 1)
+    return len(window) - STAMP.size if found is None else found.start() - STAMP.size
 
 
 class TlogWriter:

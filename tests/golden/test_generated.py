@@ -1,4 +1,3 @@
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -78,20 +77,17 @@ def test_python_gives_the_committed_vectors(sample: Sample) -> None:
     np.testing.assert_array_equal(python_response(sample, counts), response)
 
 
+def c_response(host_cc, code: Path, counts: np.ndarray, output: Path) -> np.ndarray:
+    """What the C filter in a folder answers, built strictly and with sanitizers."""
+    harness = Path(__file__).with_name("vector_main.c")
+    sources = (harness, code / "hk_filter.c", code / "hk_cordic.c")
+    program = host_cc.build(output, f"-I{code}", *sources)
+    return np.array(host_cc.run(program, counts), dtype=np.int64)
+
+
 def test_committed_c_gives_the_committed_vectors(sample: Sample, host_cc, tmp_path: Path) -> None:
     counts, response = committed_vectors(sample)
-    code = sample.folder / "host"
-    sources = (
-        Path(__file__).with_name("vector_main.c"),
-        code / "hk_filter.c",
-        code / "hk_cordic.c",
-    )
-    program = host_cc.build(tmp_path / "vectors", f"-I{code}", *sources)
-    text = "\n".join(" ".join(map(str, row)) for row in counts)
-    done = subprocess.run(
-        [program], input=text, capture_output=True, text=True, check=True, timeout=60
-    )
-    got = np.array([line.split() for line in done.stdout.splitlines()], dtype=np.int64)
+    got = c_response(host_cc, sample.folder / "host", counts, tmp_path / "vectors")
     np.testing.assert_array_equal(got, response)
 
 
@@ -123,16 +119,4 @@ def test_c_harness_can_fail(host_cc, tmp_path: Path) -> None:
             assert f"INT32_C({raw})" in text
             text = text.replace(f"INT32_C({raw})", f"INT32_C({raw ^ 1})")
         (code / path.name).write_text(text)
-    program = host_cc.build(
-        tmp_path / "vectors",
-        f"-I{code}",
-        Path(__file__).with_name("vector_main.c"),
-        code / "hk_filter.c",
-        code / "hk_cordic.c",
-    )
-    text = "\n".join(" ".join(map(str, row)) for row in counts)
-    done = subprocess.run(
-        [program], input=text, capture_output=True, text=True, check=True, timeout=60
-    )
-    got = np.array([line.split() for line in done.stdout.splitlines()], dtype=np.int64)
-    assert (got != response).any()
+    assert (c_response(host_cc, code, counts, tmp_path / "vectors") != response).any()

@@ -9,7 +9,7 @@ from designs import design
 from device import Device
 
 from hostkit.errors import DeviceError, HostkitError
-from hostkit.link.tlog import TlogWriter, read_tlog
+from hostkit.link.tlog import CHUNK_BYTES, TlogWriter, read_tlog
 from hostkit.link.transport import open_transport
 from hostkit.monitor import Session
 from hostkit.validation import Thresholds
@@ -145,6 +145,23 @@ def test_damaged_tlog_gives_the_rest(tmp_path: Path) -> None:
     good = [bytes(8) + frame for frame in frames]
     path.write_bytes(b"".join(good[:20]) + b"\x07" * 33 + b"".join(good[20:]) + good[0][:15])
     assert set(read_tlog(path)) >= set(frames[:20]) | set(frames[21:])
+
+
+@pytest.mark.parametrize("filler", [b"\x00", b"\xfd\xff\xff", b"\xfe\xff"])
+def test_large_damage_is_passed_over(filler: bytes, tmp_path: Path) -> None:
+    """After three chunks of rubbish frames are found again within 1 KiB.
+
+    A false frame swallows up to 280 bytes, and what is left of it may look like the next.
+    """
+    path = tmp_path / "x.tlog"
+    frames = Device(D).frames(50)
+    good = b"".join(bytes(8) + frame for frame in frames)
+    rubbish = filler * (3 * CHUNK_BYTES // len(filler))
+    path.write_bytes(good + rubbish + good)
+    found = list(read_tlog(path))
+    assert found[:51] == frames
+    kept = len(frames) - 1024 // (8 + min(map(len, frames[1:])))
+    assert found[-kept:] == frames[-kept:]
 
 
 @pytest.mark.parametrize(
