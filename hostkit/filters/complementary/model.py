@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import pitch_from_up, roll_from_up, to_body
-from hostkit.errors import DesignError, FormatError
+from hostkit.errors import FormatError
+from hostkit.filters.complementary.parameters import settings, tau_from_eta
 from hostkit.filters.cordic import arcsin_count, atan2_count, atan2_magnitude, cordic_table
 from hostkit.fixedpoint import coefficient, shift_round, wrap32
-from hostkit.records import AXES, Axis, FilterDesign, FixedPointSpec, Parameter, TiltMethod
+from hostkit.records import AXES, Axis, FilterDesign, FixedPointSpec, TiltMethod
 from hostkit.sensors import SENSORS
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
@@ -29,54 +30,8 @@ IntArray = NDArray[np.int64]
 RATE_AXIS: dict[Axis, int] = {"roll": 0, "pitch": 1}
 """Body axis whose rate raises the angle."""
 
-MEMORY_LIMIT_SAMPLES = 1e6
-"""Longest time constant in samples; beyond it the correction falls below one angle unit."""
-
 LEAST_FORCE_G = 0.125
 """Specific force from which on the stated error bound holds."""
-
-
-def parameters(eta: float) -> tuple[Parameter, ...]:
-    """Return the parameters of a design of this filter."""
-    return (Parameter(name="eta", value=eta, unit="1"),)
-
-
-def eta_from_tau(tau_s: float, period_s: float) -> float:
-    """Return the weight of the integrated rate, ``tau / (tau + dt)`` (equation 5)."""
-    return tau_s / (tau_s + period_s)
-
-
-def tau_from_eta(eta: float, period_s: float) -> float:
-    """Return the time constant, ``eta dt / (1 - eta)`` (equation 5)."""
-    return eta * period_s / (1.0 - eta)
-
-
-def crossover_hz(eta: float, period_s: float) -> float:
-    """Return the frequency at which rate and force weigh the same, ``1 / (2 pi tau)``."""
-    return 1.0 / (2.0 * math.pi * tau_from_eta(eta, period_s))
-
-
-def checked_eta(design: FilterDesign) -> float:
-    """Return eta of a design.
-
-    Raises
-    ------
-    DesignError
-        If it is outside (0, 1), its time constant is longer than a million samples, or the
-        design has a parameter that this filter does not.
-    """
-    strange = [p.name for p in design.parameters if p.name != "eta"]
-    if strange:
-        raise DesignError(f"the complementary filter has no parameter {strange[0]!r}; it has: eta")
-    eta = design.parameter("eta")
-    if not 0.0 < eta < 1.0:
-        raise DesignError(f"eta = {eta} is outside the open interval (0, 1)")
-    if eta / (1.0 - eta) > MEMORY_LIMIT_SAMPLES:
-        raise DesignError(
-            f"eta = {eta} is a time constant of {eta / (1.0 - eta):.3g} samples; "
-            f"the limit is {MEMORY_LIMIT_SAMPLES:.0e}"
-        )
-    return eta
 
 
 def measured_tilt_rad(axis: Axis, method: TiltMethod, force_g: Vector) -> Vector:
@@ -123,7 +78,7 @@ def run_float(
     """
     rate = to_body(design.mounting, rate_rad_s)
     force = to_body(design.mounting, force_g)
-    eta = checked_eta(design)
+    eta = settings(design).eta
     columns = []
     for i, axis in enumerate(AXES[design.axes]):
         tilt = measured_tilt_rad(axis, design.tilt, force)
@@ -158,7 +113,7 @@ def lower(design: FilterDesign) -> FixedPointSpec:
     DesignError
         If eta or the sensor configuration is not possible.
     """
-    eta = checked_eta(design)
+    eta = settings(design).eta
     sensor = SENSORS[design.sensor.part]
     rad_s_per_count = sensor.rad_s_per_count(design.sensor)
     gain = rad_s_per_count * design.period_s / RAD_PER_HALF_TURN_LSB
