@@ -2,6 +2,9 @@
 
 import math
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import IO
 
 import numpy as np
@@ -39,6 +42,51 @@ def read_member(archive: zipfile.ZipFile, name: str) -> NDArray[np.generic]:
     return array
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """One array of an archive, to be read row by row from its beginning."""
+
+    name: str
+    shape: tuple[int, ...]
+    dtype: np.dtype[np.generic]
+    stream: IO[bytes]
+
+    def read(self, rows: int) -> NDArray[np.generic]:
+        """Return the next rows.
+
+        Raises
+        ------
+        RecordingError
+            If there are not so many.
+        """
+        inner = self.shape[1:]
+        wanted = rows * math.prod(inner) * self.dtype.itemsize
+        content = self.stream.read(wanted)
+        if len(content) < wanted:
+            raise RecordingError(f"{self.name} ends after {len(content)} of {wanted} bytes")
+        return np.frombuffer(content, dtype=self.dtype).reshape(rows, *inner)
+
+
+@contextmanager
+def open_member(archive: zipfile.ZipFile, name: str) -> Iterator[Member]:
+    """Open one array of an archive for reading in parts, of any size.
+
+    Raises
+    ------
+    RecordingError
+        If the array holds Python objects, is stored column by column, or claims another size than
+        the file holds.
+    """
+    info = _info(archive, name)
+    with archive.open(info) as stream:
+        _require_honest(stream, name, info.file_size)
+    with archive.open(info) as stream:
+        shape, in_columns, dtype = _full_header(stream, name)
+        if in_columns and len(shape) > 1:
+            raise RecordingError(f"{name} is stored column by column; save it in C order")
+        yield Member(name=name, shape=shape, dtype=dtype, stream=stream)
+
+
 def _info(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
     try:
         return archive.getinfo(f"{name}.npy")
@@ -47,7 +95,7 @@ def _info(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
 
 
 def _require_honest(stream: IO[bytes], name: str, size: int) -> None:
-    shape, dtype = _header(stream, name)
+    shape, _, dtype = _full_header(stream, name)
     if dtype.hasobject:
         raise RecordingError(f"{name} holds Python objects; save it as numbers or text")
     claimed = math.prod(shape) * dtype.itemsize
@@ -58,12 +106,13 @@ def _require_honest(stream: IO[bytes], name: str, size: int) -> None:
         )
 
 
-def _header(stream: IO[bytes], name: str) -> tuple[tuple[int, ...], np.dtype[np.generic]]:
+def _full_header(
+    stream: IO[bytes], name: str
+) -> tuple[tuple[int, ...], bool, np.dtype[np.generic]]:
+    """Return the shape, whether columns are stored one after the other, and the type."""
     version = np.lib.format.read_magic(stream)
     if version == (1, 0):
-        shape, _, dtype = np.lib.format.read_array_header_1_0(stream)
-    elif version == (2, 0):
-        shape, _, dtype = np.lib.format.read_array_header_2_0(stream)
-    else:
-        raise RecordingError(f"{name} is in npy version {version}; 1.0 and 2.0 are read")
-    return shape, dtype
+        return np.lib.format.read_array_header_1_0(stream)
+    if version == (2, 0):
+        return np.lib.format.read_array_header_2_0(stream)
+    raise RecordingError(f"{name} is in npy version {version}; 1.0 and 2.0 are read")

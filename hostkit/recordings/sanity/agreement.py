@@ -48,11 +48,14 @@ class Agreement:
     scale
         What the angular rate must be multiplied by to agree with d(up)/dt: 1 if the units are
         right, pi/180 for deg/s. None if there was not enough motion.
+    explained
+        Share of the square of d(up)/dt that the rate explains with that scale, 0 to 1.
     """
 
     judged: tuple[bool, bool, bool]
     flipped: tuple[bool, bool, bool]
     scale: float | None
+    explained: float = 0.0
 
 
 def agreement(recording: Recording) -> Agreement:
@@ -64,8 +67,12 @@ def agreement(recording: Recording) -> Agreement:
     errors = _errors(columns, turned)
     flipped, upright = (_axes(errors, sign) for sign in (-1, 1))
     judged = tuple(f or u for f, u in zip(flipped, upright, strict=True))
+    explained, scale = _scale(columns, turned)
     return Agreement(
-        judged=(judged[0], judged[1], judged[2]), flipped=flipped, scale=_scale(columns, turned)
+        judged=(judged[0], judged[1], judged[2]),
+        flipped=flipped,
+        scale=scale if explained > MIN_EXPLAINED else None,
+        explained=explained,
     )
 
 
@@ -133,13 +140,12 @@ def _axes(errors: dict[Signs, float], sign: int) -> tuple[bool, bool, bool]:
     return clear(0), clear(1), clear(2)
 
 
-def _scale(columns: Vector, turned: Vector) -> float | None:
-    """Return the factor of the choice of signs that explains most, if it explains enough."""
+def _scale(columns: Vector, turned: Vector) -> tuple[float, float]:
+    """Return the share explained by the choice of signs that explains most, and its factor."""
     found: list[tuple[float, float]] = []
     for signs in product((1.0, -1.0), repeat=3):
         column = columns @ np.array(signs)
         power, pull = float(column @ column), float(column @ turned)
         if power > 0.0 and pull > 0.0:
             found.append((pull**2 / (power * float(turned @ turned)), pull / power))
-    explained, scale = max(found, default=(0.0, 0.0))
-    return scale if explained > MIN_EXPLAINED else None
+    return max(found, default=(0.0, 0.0))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hostkit.attitude import inclination_rad
 from hostkit.recordings.recording import Recording, Vector
@@ -50,8 +51,29 @@ def standstill(recording: Recording) -> Standstill | None:
     not drift by more than the limits above, and its mean rate is within `ALIKE_RAD_S` of the
     slowest such window: a steady turn looks like rest otherwise.
     """
+    still, width = still_windows(recording)
+    if np.count_nonzero(still) < MIN_WINDOWS:
+        return None
     rate, force = (
-        _windows(recording, values)
+        _windows(values, width).mean(axis=1)[still]
+        for values in (recording.angular_rate_rad_s, recording.specific_force_m_s2)
+    )
+    return Standstill(
+        windows=int(np.count_nonzero(still)),
+        bias_rad_s=np.median(rate, axis=0),
+        force_m_s2=float(np.median(np.linalg.norm(force, axis=1))),
+        reference_error_rad=_reference_error(recording, force, still, width),
+    )
+
+
+def still_windows(recording: Recording) -> tuple[NDArray[np.bool_], int]:
+    """Return which windows are at rest, shape ``(W,)``, and how many samples a window has.
+
+    Window w begins at sample w times the width; what is left at the end is in no window.
+    """
+    width = _width(recording)
+    rate, force = (
+        _windows(values, width)
         for values in (recording.angular_rate_rad_s, recording.specific_force_m_s2)
     )
     still = rate.std(axis=1).max(axis=1, initial=0.0) < MAX_RATE_SPREAD_RAD_S
@@ -60,23 +82,18 @@ def standstill(recording: Recording) -> Standstill | None:
     means = rate.mean(axis=1)
     speed = np.where(still, np.linalg.norm(means, axis=1), np.inf)
     if not (speed < MAX_RATE_RAD_S).any():
-        return None
-    slowest = means[np.argmin(speed)]
-    still &= np.abs(means - slowest).max(axis=1) < ALIKE_RAD_S
-    if np.count_nonzero(still) < MIN_WINDOWS:
-        return None
-    return Standstill(
-        windows=int(np.count_nonzero(still)),
-        bias_rad_s=np.median(means[still], axis=0),
-        force_m_s2=float(np.median(np.linalg.norm(force[still].mean(axis=1), axis=1))),
-        reference_error_rad=_reference_error(recording, force[still].mean(axis=1), still),
-    )
+        return np.zeros(len(still), dtype=np.bool_), width
+    still &= np.abs(means - means[np.argmin(speed)]).max(axis=1) < ALIKE_RAD_S
+    return still, width
 
 
-def _windows(recording: Recording, values: Vector) -> Vector:
-    """Cut rows, shape ``(N, 3)``, into windows, shape ``(W, samples, 3)``."""
+def _width(recording: Recording) -> int:
     step_s = float(np.median(np.diff(recording.time_s)))
-    width = max(MIN_SAMPLES, round(WINDOW_S / step_s))
+    return max(MIN_SAMPLES, round(WINDOW_S / step_s))
+
+
+def _windows(values: Vector, width: int) -> Vector:
+    """Cut rows, shape ``(N, 3)``, into windows, shape ``(W, width, 3)``."""
     count = len(values) // width
     return values[: count * width].reshape(count, width, 3)
 
@@ -88,10 +105,12 @@ def _drift(force: Vector) -> Vector:
     return drift
 
 
-def _reference_error(recording: Recording, force: Vector, still: Vector) -> float | None:
+def _reference_error(
+    recording: Recording, force: Vector, still: NDArray[np.bool_], width: int
+) -> float | None:
     if recording.up_reference is None:
         return None
-    up = _windows(recording, recording.up_reference)[still].mean(axis=1)
+    up = _windows(recording.up_reference, width)[still].mean(axis=1)
     known = np.isfinite(up).all(axis=1)
     if not known.any():
         return None
