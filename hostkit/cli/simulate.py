@@ -6,8 +6,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from hostkit.cli.inputs import finite
+from hostkit.cli.inputs import finite, say
 from hostkit.cli.output import emit_json
+from hostkit.diagnosis import load_measured_errors
 from hostkit.errors import HostkitError
 from hostkit.recordings import SUFFIXES, Recording, check, save
 from hostkit.records import SensorConfig
@@ -114,6 +115,13 @@ def _suffixed(context: click.Context, option: click.Parameter, path: Path) -> Pa
     metavar="M_S2",
     help="Vibration along each axis, m/s^2 rms, 20 to 120 Hz.",
 )
+@click.option(
+    "--errors-from",
+    "errors_file",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="FILE.json",
+    help="Bias and noise as hostkit diagnose measured them (--allan-out or --json).",
+)
 @click.option("--ideal", is_flag=True, help="An exact sensor: no noise, delay, range or counts.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
 def simulate(
@@ -127,6 +135,7 @@ def simulate(
     low_pass: str,
     gyro_bias_deg_s: float | None,
     vibration_m_s2: float,
+    errors_file: Path | None,
     ideal: bool,
     as_json: bool,
 ) -> None:
@@ -142,7 +151,7 @@ def simulate(
         accel_full_scale_g=int(accel_range),
         low_pass_setting=int(low_pass),
     )
-    errors = _errors(ideal, gyro_bias_deg_s, vibration_m_s2)
+    errors = _errors(ideal, gyro_bias_deg_s, vibration_m_s2, errors_file)
     recording = _simulated(profile, duration_s, rate_hz, sensor, errors, seed)
     card = check(recording)
     save(recording, output)
@@ -151,15 +160,27 @@ def simulate(
     _report(output, recording, profile, seed, as_json)
 
 
-def _errors(ideal: bool, gyro_bias_deg_s: float | None, vibration_m_s2: float) -> SensorErrors:
-    if ideal and (gyro_bias_deg_s or vibration_m_s2):
-        raise click.UsageError("--ideal has no error; leave out --gyro-bias and --vibration")
+def _errors(
+    ideal: bool, gyro_bias_deg_s: float | None, vibration_m_s2: float, errors_file: Path | None
+) -> SensorErrors:
+    if ideal and (gyro_bias_deg_s or vibration_m_s2 or errors_file is not None):
+        raise click.UsageError(
+            "--ideal has no error; leave out --gyro-bias, --vibration and --errors-from"
+        )
     if ideal:
         return SensorErrors.none()
-    errors = SensorErrors(vibration_m_s2=vibration_m_s2)
+    errors = SensorErrors() if errors_file is None else _measured(errors_file)
+    errors = replace(errors, vibration_m_s2=vibration_m_s2)
     if gyro_bias_deg_s is None:
         return errors
     return replace(errors, gyro_bias_rad_s=(gyro_bias_deg_s * RAD_PER_DEG,) * 3)
+
+
+def _measured(errors_file: Path) -> SensorErrors:
+    measured = load_measured_errors(errors_file)
+    for remark in measured.remarks:
+        say(f"{errors_file}: {remark}")
+    return measured.errors
 
 
 def _simulated(

@@ -1,97 +1,36 @@
 """The figures of the reports, each as SVG text."""
 
-import io
-import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
-from hostkit.errors import ToolMissingError
 from hostkit.filters.complementary import crossover_hz, tau_from_eta
-from hostkit.tuning import Evaluation
+from hostkit.report.canvas import BLUE, GREEN, GREY, INK, ORANGE, new_figure, svg_text, thinning
+from hostkit.tuning import Evaluation, Interval, Profile
 from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]
 
-MOST_POINTS = 3000
-"""Points of a line; more do not show and make the file large."""
-
-INK = "#1f2933"
-BLUE, ORANGE, GREEN, GREY = "#1769aa", "#d9730d", "#2e7d4f", "#9aa5b1"
-STYLE: Any = {
-    "svg.fonttype": "none",
-    "svg.hashsalt": "hostkit",
-    "font.family": "sans-serif",
-    "font.size": 10,
-    "text.color": INK,
-    "axes.edgecolor": GREY,
-    "axes.labelcolor": INK,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e4e7eb",
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "legend.frameon": False,
-    "lines.linewidth": 1.4,
-    "figure.constrained_layout.use": True,
-}
-
-
-def _figure(rows: int = 1, height: float = 3.0) -> tuple[Any, Any, Any]:
-    """Return matplotlib's pyplot-free figure, its axes and the canvas class.
-
-    Raises
-    ------
-    ToolMissingError
-        If matplotlib is not installed.
-    """
-    try:
-        import matplotlib as mpl
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ToolMissingError(
-            "a report needs matplotlib: pip install 'hostkit[report]'"
-        ) from error
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(8.4, height))
-        FigureCanvasSVG(figure)
-        return figure, figure.subplots(rows, 1, sharex=True), mpl
-
-
-def _svg(figure: Any, mpl: Any) -> str:
-    buffer = io.StringIO()
-    with mpl.rc_context(STYLE):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "hostkit"})
-    text = buffer.getvalue()
-    return text[text.index("<svg") :]
-
-
-def _thin(samples: int) -> slice:
-    return slice(None, None, max(1, math.ceil(samples / MOST_POINTS)))
-
 
 def convergence(history_rad: Vector) -> str:
     """How far the swarm was from its end, over its iterations."""
-    figure, axes, mpl = _figure()
+    figure, axes, mpl = new_figure()
     excess_deg = (history_rad - history_rad[-1]) * DEG_PER_RAD
     excess_deg = np.where(excess_deg > 0.0, excess_deg, np.nan)
     axes.semilogy(excess_deg, color=BLUE, drawstyle="steps-post", marker=".")
     axes.set(xlabel="iteration", ylabel="excess cost, deg", xlim=(0, len(history_rad) - 1))
     final_deg = history_rad[-1] * DEG_PER_RAD
     axes.set_title(f"final cost {final_deg:.6g} deg", loc="right", fontsize=10)
-    return _svg(figure, mpl)
+    return svg_text(figure, mpl)
 
 
 def fit(evaluation: Evaluation, names: Sequence[str]) -> str:
     """Angles and reference over time, and the residual below, for each axis of the design."""
     count = len(names)
-    figure, axes, mpl = _figure(rows=2 * count, height=1.2 + 2.2 * count)
-    thin = _thin(evaluation.samples)
+    figure, axes, mpl = new_figure(rows=2 * count, height=1.2 + 2.2 * count)
+    thin = thinning(evaluation.samples)
     time_s = evaluation.time_s[thin] - evaluation.time_s[0]
     for i, name in enumerate(names):
         angle = evaluation.angle_rad[:, i] * DEG_PER_RAD
@@ -107,12 +46,12 @@ def fit(evaluation: Evaluation, names: Sequence[str]) -> str:
         above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2)
         below.set_ylabel("error, deg")
     axes[-1].set_xlabel("time, s")
-    return _svg(figure, mpl)
+    return svg_text(figure, mpl)
 
 
 def residual_histogram(evaluations: Sequence[Evaluation], names: Sequence[str]) -> str:
     """Distribution of the error over all recordings."""
-    figure, axes, mpl = _figure()
+    figure, axes, mpl = new_figure()
     for i, (name, colour) in enumerate(zip(names, (BLUE, ORANGE), strict=False)):
         parts = [
             wrap_rad(e.angle_rad[e.scored, i] - e.reference_rad[e.scored, i]) * DEG_PER_RAD
@@ -123,37 +62,73 @@ def residual_histogram(evaluations: Sequence[Evaluation], names: Sequence[str]) 
             axes.hist(np.concatenate(parts), bins=80, color=colour, alpha=0.65, label=name)
     axes.set(xlabel="error, deg", ylabel="samples")
     axes.legend()
-    return _svg(figure, mpl)
+    return svg_text(figure, mpl)
 
 
-def frequency_response(eta: float, period_s: float) -> str:
-    """How the filter weighs the two sensors over frequency, with the crossover."""
-    figure, axes, mpl = _figure()
+def frequency_response(eta: float, period_s: float, integral_gain_per_s2: float = 0.0) -> str:
+    """Bode diagram: how the filter weighs its two sensors over frequency, with the crossover."""
+    figure, axes, mpl = new_figure(rows=2, height=4.6)
+    magnitude, phase = axes
     frequency_hz = np.geomspace(1e-3 / tau_from_eta(eta, period_s), 0.5 / period_s, 400)
-    delay = np.exp(-2j * np.pi * frequency_hz * period_s)
-    low = (1.0 - eta) / (1.0 - eta * delay)
-    high = eta * (1.0 - delay) / (1.0 - eta * delay)
+    force, rate = weights(frequency_hz, eta, period_s, integral_gain_per_s2)
+    for weight, colour, name in ((force, ORANGE, "specific force"), (rate, BLUE, "angular rate")):
+        magnitude.semilogx(frequency_hz, 20 * np.log10(np.abs(weight)), color=colour, label=name)
+        phase.semilogx(frequency_hz, np.unwrap(np.angle(weight)) * DEG_PER_RAD, color=colour)
     crossover = crossover_hz(eta, period_s)
-    axes.semilogx(frequency_hz, 20 * np.log10(np.abs(low)), color=ORANGE, label="specific force")
-    axes.semilogx(frequency_hz, 20 * np.log10(np.abs(high)), color=BLUE, label="angular rate")
-    axes.axvline(crossover, color=GREY, ls="--")
-    axes.annotate(f" {crossover:.3g} Hz", (crossover, -38), color=INK)
-    axes.set(xlabel="frequency, Hz", ylabel="weight, dB", ylim=(-42, 3))
-    axes.legend(loc="lower left")
-    return _svg(figure, mpl)
+    for panel in axes:
+        panel.axvline(crossover, color=GREY, ls="--")
+    magnitude.annotate(f" {crossover:.3g} Hz", (crossover, -38), color=INK)
+    magnitude.set(ylabel="weight, dB", ylim=(-42, 6))
+    magnitude.legend(loc="lower left")
+    phase.set(xlabel="frequency, Hz", ylabel="phase, deg")
+    return svg_text(figure, mpl)
+
+
+def weights(
+    frequency_hz: Vector, eta: float, period_s: float, integral_gain_per_s2: float
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return what the filter makes of the tilt from force and of the integrated rate.
+
+    Both are of shape ``(N,)`` and add up to one at every frequency. With q the delay of a sample
+    and k = ki dt^2 they follow from the equations of the filter without a gate.
+    """
+    delay = np.exp(-2j * np.pi * frequency_hz * period_s)
+    learnt = delay * integral_gain_per_s2 * period_s**2 / (1.0 - delay)
+    denominator = 1.0 - delay * eta + learnt
+    rate = eta * (1.0 - delay) / denominator
+    force = eta * (delay * (1.0 - eta) + learnt) / denominator + 1.0 - eta
+    return force, rate
+
+
+def cost_profiles(profiles: Sequence[Profile], intervals: Sequence[Interval]) -> str:
+    """Cost along each parameter, with the tuned value and its interval."""
+    figure, axes, mpl = new_figure(
+        rows=len(profiles), height=0.6 + 1.9 * len(profiles), shared=False
+    )
+    for panel, profile, interval in zip(np.atleast_1d(axes), profiles, intervals, strict=True):
+        dimension = profile.dimension
+        scale, unit = dimension.shown(1.0)
+        draw = panel.semilogx if dimension.is_log else panel.plot
+        draw(profile.values * scale, profile.cost_rad * DEG_PER_RAD, color=BLUE)
+        panel.axvline(interval.value * scale, color=ORANGE)
+        if interval.low is not None and interval.high is not None:
+            low, high = interval.low * scale, interval.high * scale
+            panel.axvspan(low, high, color=ORANGE, alpha=0.15, lw=0)
+        panel.set(ylabel="cost, deg", xlabel=f"{dimension.label}{f', {unit}' if unit else ''}")
+    return svg_text(figure, mpl)
 
 
 def device_residuals(
     time_s: Vector, residuals_rad: Sequence[tuple[str, Vector]], bound_rad: float
 ) -> str:
     """Device minus float model over time, one panel per device, with the stated bound."""
-    figure, axes, mpl = _figure(rows=len(residuals_rad), height=0.6 + 1.5 * len(residuals_rad))
+    figure, axes, mpl = new_figure(rows=len(residuals_rad), height=0.6 + 1.5 * len(residuals_rad))
     axes = np.atleast_1d(axes)
     for panel, (name, residual) in zip(axes, residuals_rad, strict=True):
-        thin = _thin(len(residual))
+        thin = thinning(len(residual))
         values = residual[thin] * DEG_PER_RAD * 1e6
         panel.plot(time_s[: len(residual)][thin], values, color=GREEN, lw=0.8)
         panel.set_ylabel("1e-6 deg")
         panel.set_title(name, loc="left", fontsize=10)
     axes[-1].set_xlabel(f"time, s   (stated bound: {bound_rad * DEG_PER_RAD * 1e6:.0f}e-6 deg)")
-    return _svg(figure, mpl)
+    return svg_text(figure, mpl)

@@ -29,22 +29,25 @@ class Channel:
     bandwidth_hz, delay_s
         Of the low-pass setting.
     noise_density
-        Unit of the channel per root hertz.
+        Unit of the channel per root hertz, one-sided, of all axes or of each.
+    of_samples
+        Whether that density is of the samples, not of the noise before the low-pass filter.
     unit_per_count
         Weight of one count.
     scale, offset
         Relative error and constant offset per axis.
     offset_walk
-        Random walk of the offset, per root second.
+        Random walk of the offset, per root second, of all axes or of each.
     """
 
     bandwidth_hz: float
     delay_s: float
-    noise_density: float
+    noise_density: float | Triple
+    of_samples: bool
     unit_per_count: float
     scale: Triple
     offset: Triple
-    offset_walk: float
+    offset_walk: float | Triple
     vibration: float
 
 
@@ -136,13 +139,30 @@ def _disturbance(
 ) -> Vector:
     """Return noise, walk of the offset and vibration, shape ``(M, 3)``."""
     fine_rate_hz, shape = sampling.fine_rate_hz, (len(time_s), 3)
-    noise_rms = errors.noise * channel.noise_density * np.sqrt(0.5 * fine_rate_hz)
+    density = np.asarray(channel.noise_density)
+    if channel.of_samples:
+        density = density / np.sqrt(_folding(channel, sampling, errors))
+    noise_rms = errors.noise * density * np.sqrt(0.5 * fine_rate_hz)
     total: Vector = noise_rms * rng.standard_normal(shape)
-    if channel.offset_walk:
-        steps = rng.standard_normal(shape) * channel.offset_walk / np.sqrt(fine_rate_hz)
+    if np.any(channel.offset_walk):
+        walk = np.asarray(channel.offset_walk)
+        steps = rng.standard_normal(shape) * walk / np.sqrt(fine_rate_hz)
         total += np.cumsum(steps, axis=0)
     if channel.vibration:
         for axis in range(3):
             curve = multisine(rms=channel.vibration, band_hz=VIBRATION_BAND_HZ, rng=rng)
             total[:, axis] += curve(time_s).value
     return total
+
+
+def _folding(channel: Channel, sampling: Sampling, errors: SensorErrors) -> float:
+    """Return how many times its power low-frequency noise has after sampling.
+
+    Sampling folds the noise at every multiple of the sample rate onto frequency 0; what is left of
+    it there is the square of the filter's gain, ``2 ** -(f / bandwidth)^2``.
+    """
+    multiples = np.arange(1 - sampling.oversampling, sampling.oversampling)
+    if not errors.low_pass:
+        return float(sampling.oversampling)
+    gains = 2.0 ** -((multiples * sampling.rate_hz / channel.bandwidth_hz) ** 2)
+    return float(gains.sum())

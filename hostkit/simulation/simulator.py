@@ -100,7 +100,9 @@ def _gyro(part: SensorPart, sensor: SensorConfig, errors: SensorErrors) -> Chann
     return Channel(
         bandwidth_hz=low_pass.gyro_bandwidth_hz,
         delay_s=low_pass.gyro_delay_s,
-        noise_density=part.noise.gyro_noise_density_rad_s_rthz,
+        noise_density=errors.gyro_noise_density_rad_s_rthz
+        or part.noise.gyro_noise_density_rad_s_rthz,
+        of_samples=errors.gyro_noise_density_rad_s_rthz is not None,
         unit_per_count=part.rad_s_per_count(sensor),
         scale=errors.gyro_scale,
         offset=errors.gyro_bias_rad_s,
@@ -114,7 +116,9 @@ def _accel(part: SensorPart, sensor: SensorConfig, errors: SensorErrors) -> Chan
     return Channel(
         bandwidth_hz=low_pass.accel_bandwidth_hz,
         delay_s=low_pass.accel_delay_s,
-        noise_density=part.noise.accel_noise_density_m_s2_rthz,
+        noise_density=errors.accel_noise_density_m_s2_rthz
+        or part.noise.accel_noise_density_m_s2_rthz,
+        of_samples=errors.accel_noise_density_m_s2_rthz is not None,
         unit_per_count=part.m_s2_per_count(sensor),
         scale=errors.accel_scale,
         offset=errors.accel_offset_m_s2,
