@@ -43,6 +43,14 @@ class DeviceError(HostkitError):
     exit_code = 4
 
 
+class SchedulerError(DeviceError):
+    """A scheduler cannot be reached or was lost, or its workers are not fit for the work."""
+
+
+class FleetError(HostkitError):
+    """Some devices of a fleet have no new design."""
+
+
 class ToolMissingError(HostkitError):
     """A program hostkit calls is not installed."""
 
