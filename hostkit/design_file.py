@@ -51,6 +51,8 @@ def _tuning_document(tuning: TuningRecord) -> dict[str, Any]:
     document = asdict(tuning)
     document["versions"] = dict(tuning.versions)
     document["recordings"] = [asdict(recording) for recording in tuning.recordings]
+    if tuning.held_out_rmse_deg is None:
+        del document["held_out_rmse_deg"]
     return document
 
 
@@ -159,7 +161,8 @@ def _parameters(reader: "_Reader") -> tuple[Parameter, ...]:
 
 def _tuning(reader: "_Reader") -> TuningRecord:
     reader.only(
-        "objective optimiser seed particles iterations evaluations rmse_deg recordings versions"
+        "objective optimiser seed particles iterations evaluations rmse_deg held_out_rmse_deg "
+        "recordings versions"
     )
     versions = reader.inner("versions")
     return TuningRecord(
@@ -172,6 +175,7 @@ def _tuning(reader: "_Reader") -> TuningRecord:
         rmse_deg=reader.number("rmse_deg"),
         recordings=tuple(_recording(r) for r in reader.items("recordings")),
         versions=tuple((name, versions.text(name)) for name in sorted(versions.keys())),
+        held_out_rmse_deg=reader.optional_number("held_out_rmse_deg"),
     )
 
 
@@ -231,6 +235,9 @@ class _Reader:
         if abs(value) > 1e18 or not math.isfinite(value):
             raise self._wrong(key, "a finite number")
         return float(value)
+
+    def optional_number(self, key: str) -> float | None:
+        return self.number(key) if key in self._items else None
 
     def integer(self, key: str) -> int:
         value = self.value(key)

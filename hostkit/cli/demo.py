@@ -22,6 +22,7 @@ from hostkit.emulation.run import EmulationResult, build, emulate
 from hostkit.errors import EmulationError, HostkitError, ToolMissingError, VerdictError
 from hostkit.link.transport import open_transport
 from hostkit.monitor import Session, SessionResult
+from hostkit.optimisers import qpso
 from hostkit.recordings import Recording, load, save
 from hostkit.records import FilterDesign, SensorConfig
 from hostkit.render import generate, write
@@ -170,7 +171,10 @@ def _simulate(path: Path, profile: str, seed: int) -> tuple[Recording, str]:
 
 
 def _tune(recording: Recording, path: Path, seed: int) -> tuple[TuningResult, str]:
-    result = tune((recording,), TuningOptions(seed=seed, sensor=SENSOR))
+    options = TuningOptions(
+        seed=seed, sensor=SENSOR, free=("tau", "gyro_bias"), optimiser=qpso.NAME
+    )
+    result = tune((recording,), options)
     save_design(result.design, path)
     eta = result.design.parameter("eta")
     error = math.degrees(result.rms_rad)

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from hostkit.design_file import digest, edited_by_hand, load_design
-from hostkit.recordings import Recording, check, load
+from hostkit.recordings import LargeRecording, Recording, check, load, open_large
 from hostkit.records import FilterDesign
 
 RECORDINGS = click.argument(
@@ -14,6 +14,12 @@ RECORDINGS = click.argument(
     nargs=-1,
     required=True,
     metavar="REC...",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+)
+RECORDINGS_OR_NONE = click.argument(
+    "recording_files",
+    nargs=-1,
+    metavar="[REC...]",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
 )
 DESIGN = click.argument(
@@ -51,6 +57,24 @@ def read_recording(path: Path) -> Recording:
         for line in card.lines():
             say(f"  {line}")
     return recording
+
+
+def read_for_tuning(path: Path) -> Recording | LargeRecording:
+    """Load a recording, or open one that does not fit the memory.
+
+    Raises
+    ------
+    RecordingError
+        If the recording has a hard fault.
+    """
+    large = open_large(path)
+    if large is None:
+        return read_recording(path)
+    card = check(large.head)
+    say(f"{path}: {len(large)} samples are read part by part; sanity card of the first:")
+    for line in card.lines():
+        say(f"  {line}")
+    return large
 
 
 def read_design(path: Path) -> FilterDesign:

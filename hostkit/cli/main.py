@@ -1,6 +1,7 @@
 """The entry point: finds the subcommand, reads the project file, turns errors into one line."""
 
 import importlib
+import keyword
 import sys
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,15 @@ else:
 COMMANDS = {
     "demo": "The whole loop without hardware, ending in a report.",
     "simulate": "Make a recording from a motion profile.",
+    "import": "Turn another format into a recording.",
+    "diagnose": "Say what a recording shows of sensor and motion.",
     "tune": "Find the filter for recordings; write a design.",
     "evaluate": "Score a design on recordings.",
     "generate": "Render a design to C or VHDL.",
     "build": "Compile or analyse generated code.",
     "emulate": "Run the generated code on an emulated board or simulator.",
     "monitor": "Validate a live device against the models.",
+    "reproduce": "The tilt paper's table and figures beside ours.",
     "doctor": "Show what is installed and how to get what is missing.",
 }
 PROJECT_FILE = Path("hostkit.toml")
@@ -41,8 +45,8 @@ class Commands(click.Group):
         """Import one subcommand."""
         if cmd_name not in COMMANDS:
             return None
-        module = importlib.import_module(f"hostkit.cli.{cmd_name}")
-        command: click.Command = getattr(module, cmd_name)
+        name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+        command: click.Command = getattr(importlib.import_module(f"hostkit.cli.{name}"), name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

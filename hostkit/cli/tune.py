@@ -1,24 +1,36 @@
 """The subcommand ``tune``: from recordings to a design."""
 
-import math
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import JSON, RECORDINGS, read_recording, say
+from hostkit.cli.fleet import fleet_options
+from hostkit.cli.fleet import run as run_fleet
+from hostkit.cli.inputs import JSON, RECORDINGS_OR_NONE, read_for_tuning, say
 from hostkit.cli.output import emit_json
-from hostkit.design_file import digest, save_design
+from hostkit.cli.parameter_options import FIX, FREE, RANGE
+from hostkit.cli.tune_output import show, tuning_document
+from hostkit.design_file import save_design
+from hostkit.diagnosis import diagnose, findings
 from hostkit.errors import DesignError
-from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.fleet import FleetOptions, GroupBy, SensorWish
 from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS
+from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
 from hostkit.sensors import SENSORS
-from hostkit.tuning import TuningOptions, TuningResult, sensor_config
+from hostkit.tuning import AUTO, FixedParameter, FreeName, SearchRange, TuningOptions, sensor_config
 from hostkit.tuning import tune as run_tuning
-from hostkit.units import DEG_PER_RAD
+from hostkit.tuning.options import PRECISIONS, Precision
+from hostkit.tuning.search import ONE_PARAMETER
 
 PART = SENSORS["mpu6050"]
+
+DESIGN_FILE, FLEET_FOLDER = Path("design.json"), Path("designs")
+MOST_SHOWN = 3
+"""Recordings whose motion is called unfit one by one."""
 
 
 def parse_mounting(context: click.Context, option: click.Parameter, text: str) -> Mounting:
@@ -30,15 +42,21 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
 
 
 @click.command("tune")
-@RECORDINGS
+@RECORDINGS_OR_NONE
 @click.option(
     "-o",
     "--output",
-    type=click.Path(dir_okay=False, path_type=Path),
-    default=Path("design.json"),
-    show_default=True,
+    type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Design to write.",
+    help=f"Design to write, by default {DESIGN_FILE}; with --fleet a folder, by default "
+    f"{FLEET_FOLDER}.",
+)
+@click.option(
+    "--fleet",
+    "fleet_folder",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="DIR",
+    help="Tune one design for each device of DIR instead.",
 )
 @click.option(
     "--filter",
@@ -77,16 +95,46 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     show_default=True,
     help="What is made small, mean over recordings; mae is the paper's.",
 )
+@FREE
+@FIX
+@RANGE
 @click.option(
     "--optimiser",
-    type=click.Choice(OPTIMISERS.names()),
-    default="qpso",
+    type=click.Choice((AUTO, *OPTIMISERS.names())),
+    default=AUTO,
     show_default=True,
-    help="Rule of the swarm.",
+    help="How to search; auto is grid-brent for one parameter, which needs no swarm, else qpso.",
 )
 @click.option("--particles", type=click.IntRange(1, 100_000), default=20, show_default=True)
 @click.option("--iterations", type=click.IntRange(1, 100_000), default=100, show_default=True)
+@click.option(
+    "--restarts",
+    type=click.IntRange(1, 10_000),
+    default=1,
+    show_default=True,
+    help="Swarms with seeds of their own; the best is kept.",
+)
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=1, show_default=True)
+@click.option(
+    "--precision",
+    type=click.Choice(PRECISIONS),
+    default="float64",
+    show_default=True,
+    help="Arithmetic of the search; float32 takes half the memory and time.",
+)
+@click.option(
+    "--held-out/--no-held-out",
+    default=True,
+    show_default=True,
+    help="Leave recordings out in turn, for an error on data that was not tuned on.",
+)
+@click.option(
+    "--resamples",
+    type=click.IntRange(0, 100_000),
+    default=40,
+    show_default=True,
+    help="Tunings on resampled recordings, for the intervals; 0 for none.",
+)
 @click.option(
     "--gyro-range",
     type=click.Choice([str(r.full_scale) for r in PART.gyro_ranges]),
@@ -109,19 +157,32 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     metavar="FILE.html",
     help="Also write a report with plots.",
 )
+@fleet_options
 @JSON
 def tune(
     recording_files: tuple[Path, ...],
-    output: Path,
+    output: Path | None,
+    fleet_folder: Path | None,
     filter_name: str,
     axes: AxisChoice,
     mounting: Mounting,
     tilt: TiltMethod,
     objective: Objective,
+    free: tuple[FreeName, ...],
+    fixed: tuple[FixedParameter, ...],
+    ranges: tuple[SearchRange, ...],
     optimiser: str,
     particles: int,
     iterations: int,
+    restarts: int,
     seed: int,
+    jobs: int | None,
+    scheduler: str | None,
+    group_by: GroupBy,
+    redo: bool,
+    precision: Precision,
+    held_out: bool,
+    resamples: int,
     gyro_range: str | None,
     accel_range: str | None,
     low_pass: str | None,
@@ -135,14 +196,6 @@ def tune(
       hostkit simulate --profile sine-sweep -o sweep.csv
       hostkit tune sweep.csv --axes both --seed 1 -o design.json
     """
-    recordings = tuple(read_recording(path) for path in recording_files)
-    sensor = sensor_config(
-        recordings,
-        recordings[0].rate_hz,
-        gyro_full_scale_deg_s=None if gyro_range is None else int(gyro_range),
-        accel_full_scale_g=None if accel_range is None else int(accel_range),
-        low_pass_setting=None if low_pass is None else int(low_pass),
-    )
     options = TuningOptions(
         axes=axes,
         mounting=mounting,
@@ -151,58 +204,84 @@ def tune(
         optimiser=optimiser,
         particles=particles,
         iterations=iterations,
+        free=tuple(name for name in free if name not in {f.name for f in fixed}),
+        fixed=fixed,
+        ranges=ranges,
+        restarts=restarts,
         seed=seed,
-        sensor=sensor,
+        jobs=1 if jobs is None or fleet_folder else jobs,
+        precision=precision,
+        held_out=held_out,
+        resamples=resamples,
     )
-    result = run_tuning(recordings, options)
+    wish = SensorWish(
+        gyro_full_scale_deg_s=None if gyro_range is None else int(gyro_range),
+        accel_full_scale_g=None if accel_range is None else int(accel_range),
+        low_pass_setting=None if low_pass is None else int(low_pass),
+    )
+    if (fleet_folder is None) == (not recording_files):
+        raise click.UsageError("name recordings, or a folder of devices with --fleet")
+    if fleet_folder is None:
+        _tune_one(recording_files, output or DESIGN_FILE, options, wish, report_file, as_json)
+    else:
+        run_fleet(
+            fleet_folder,
+            output or FLEET_FOLDER,
+            FleetOptions(tuning=options, wish=wish, group_by=group_by, redo=redo),
+            jobs=jobs,
+            scheduler=scheduler,
+            report_file=report_file,
+            as_json=as_json,
+        )
+
+
+def _tune_one(
+    files: tuple[Path, ...],
+    output: Path,
+    options: TuningOptions,
+    wish: SensorWish,
+    report_file: Path | None,
+    as_json: bool,
+) -> None:
+    recordings = tuple(read_for_tuning(path) for path in files)
+    _say_motion(recordings, options)
+    sensor = sensor_config(
+        recordings,
+        recordings[0].rate_hz,
+        gyro_full_scale_deg_s=wish.gyro_full_scale_deg_s,
+        accel_full_scale_g=wish.accel_full_scale_g,
+        low_pass_setting=wish.low_pass_setting,
+    )
+    result = run_tuning(recordings, replace(options, sensor=sensor))
     save_design(result.design, output)
-    if result.swarm.at_bound.any():
-        say("tau lies on the edge of its range: the recordings do not determine it")
+    for remark in result.remarks:
+        say(remark)
+    if len(result.intervals) == 1 and options.optimiser not in (AUTO, ONE_PARAMETER):
+        say(f"one parameter needs no swarm: {ONE_PARAMETER} finds the same in some 40 evaluations")
     if as_json:
         emit_json(tuning_document(result, output))
     else:
-        _show(result, output)
+        show(result, output)
     if report_file is not None:
         from hostkit.report import write_tuning_report
 
         write_tuning_report(result, report_file)
 
 
-def tuning_document(result: TuningResult, output: Path) -> dict[str, object]:
-    """Return the result of a tuning as the document ``hostkit.tune/1``."""
-    design = result.design
-    eta = design.parameter("eta")
-    assert design.tuning is not None
-    return {
-        "schema": "hostkit.tune/1",
-        "design": str(output),
-        "digest": digest(design),
-        "filter": design.filter,
-        "parameters": {p.name: p.value for p in design.parameters},
-        "eta": eta,
-        "tau_s": tau_from_eta(eta, design.period_s),
-        "crossover_hz": crossover_hz(eta, design.period_s),
-        "rate_hz": design.rate_hz,
-        "rmse_deg": result.rms_rad * DEG_PER_RAD,
-        "evaluations": result.swarm.evaluations,
-        "optimiser": design.tuning.optimiser,
-        "seed": design.tuning.seed,
-        "at_bound": bool(result.swarm.at_bound.any()),
-    }
-
-
-def _show(result: TuningResult, output: Path) -> None:
-    design = result.design
-    eta = design.parameter("eta")
-    tau_s = tau_from_eta(eta, design.period_s)
-    what = "inclination" if design.axes == "both" else design.axes
-    sensor = design.sensor
-    click.echo(
-        f"eta {eta:.6f}  =  tau {tau_s:.4g} s  =  crossover "
-        f"{crossover_hz(eta, design.period_s):.4g} Hz  at  {design.rate_hz:g} Hz\n"
-        f"RMSE of {what}, mean over {len(result.evaluations)} training recording(s): "
-        f"{math.degrees(result.rms_rad):.4f} deg\n"
-        f"sensor: +-{sensor.gyro_full_scale_deg_s} deg/s, +-{sensor.accel_full_scale_g} g, "
-        f"low-pass setting {sensor.low_pass_setting}\n"
-        f"{output}: design {digest(design)}, {result.swarm.evaluations} evaluations"
-    )
+def _say_motion(recordings: tuple[Recording | LargeRecording, ...], options: TuningOptions) -> None:
+    """Say what the motion calls for, before anything is tuned."""
+    verdicts: Counter[str] = Counter()
+    unfit = []
+    for recording in recordings:
+        part = recording.head if isinstance(recording, LargeRecording) else recording
+        diagnosis = diagnose(part, axes=options.axes, mounting=options.mounting)
+        motion = next(f for f in findings(diagnosis) if f.topic == "motion")
+        verdicts[diagnosis.planarity.verdict or "cannot be judged"] += 1
+        if motion.level == "look":
+            unfit.append(f"{recording.name}: {motion.sentence} -> {motion.action}")
+    counts = ", ".join(f"{verdict} ({count})" for verdict, count in verdicts.items())
+    say(f"motion of {len(recordings)} recording(s): {counts}")
+    for line in unfit[:MOST_SHOWN]:
+        say(f"  {line}")
+    if len(unfit) > MOST_SHOWN:
+        say(f"  and {len(unfit) - MOST_SHOWN} more; hostkit diagnose shows them")

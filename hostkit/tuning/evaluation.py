@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hostkit.attitude import inclination_rad, up_from_tilt, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters import FILTERS
-from hostkit.recordings import Recording
+from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import at_full_scale, to_counts, to_rate_and_force_g
@@ -89,9 +89,10 @@ def evaluate(design: FilterDesign, recording: Recording) -> Evaluation:
     counts = to_counts(
         part, design.sensor, recording.angular_rate_rad_s, recording.specific_force_m_s2
     )
-    raw = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
+    axes = len(AXES[design.axes])
+    raw = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)[:, :axes]
     angle = raw * RAD_PER_HALF_TURN_LSB
-    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))
+    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))[:, :axes]
     reference, scored = _reference(design, recording)
     return Evaluation(
         recording=recording.name,
@@ -107,7 +108,7 @@ def evaluate(design: FilterDesign, recording: Recording) -> Evaluation:
     )
 
 
-def require_rate(rate_hz: float, recording: Recording) -> None:
+def require_rate(rate_hz: float, recording: Recording | LargeRecording) -> None:
     """Refuse a recording whose sample rate is not `rate_hz` within 1 %.
 
     Raises

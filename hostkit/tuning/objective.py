@@ -1,7 +1,14 @@
-"""The tuning objective: the error of the complementary filter, for a whole swarm at a time.
+"""Laying a recording out for the kernel: the filter in error form.
 
-The filter is evaluated in its error form, which is the filter itself with the reference taken
-out. With w the rate, m the measured tilt, r the reference, and v = m - r::
+The error form is the filter itself with the reference taken out. With w the rate, m the measured
+tilt, r the reference, v = m - r and dt the period, the filter of
+`hostkit.filters.complementary.parameters` becomes::
+
+    p_k = e_(k-1) + ((1 + s) w_k - b_(k-1)) dt - (r_k - r_(k-1))
+    i_k = v_k - o - p_k  if | |f_k| - 1 g | < gate, else 0
+    e_k = p_k + (1 - eta) i_k,    b_k = b_(k-1) - ki i_k dt,    e_0 = v_0 - o
+
+and where eta is the only parameter::
 
     c_k = w_k dt - (r_k - r_(k-1)) - v_k
     e_k = eta e_(k-1) + (eta c_k + v_k),    e_0 = v_0
@@ -10,66 +17,62 @@ It equals the wrapped filter exactly as long as no innovation exceeds half a tur
 is reported of a finished design comes from the filter itself.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.signal import lfilter
+from numpy.typing import DTypeLike, NDArray
 
 from hostkit.attitude import pitch_from_up, roll_from_up, to_body, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters.complementary import RATE_AXIS, measured_tilt_rad
+from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AXES, Axis, AxisChoice, Objective, TiltMethod, read_only
+from hostkit.records import AXES, Axis, AxisChoice, TiltMethod
+from hostkit.tuning.kernel import ErrorStream, runs_of
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorStream:
-    """One axis of one recording.
+class Layout:
+    """How recordings are laid out for the kernel.
 
     Attributes
     ----------
-    drive, start
-        c and v above, shape ``(N,)``.
-    scored
-        Samples that count, shape ``(N,)``.
+    full
+        Whether more than eta is tuned, so that the longer recursion is needed.
+    dtype
+        Of the streams, float64 or float32.
     """
 
-    drive: Vector
-    start: Vector
-    scored: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for array in (self.drive, self.start, self.scored):
-            read_only(array)
+    axes: AxisChoice
+    tilt: TiltMethod
+    mounting: Mounting
+    period_s: float
+    full: bool
+    dtype: DTypeLike = np.float64
 
 
-def prepare(
-    recordings: tuple[Recording, ...],
-    *,
-    axes: AxisChoice,
-    tilt: TiltMethod,
-    mounting: Mounting,
-    period_s: float,
-) -> tuple[ErrorStream, ...]:
-    """Lay recordings out for :func:`cost`, a stream for each recording and axis.
+def prepare(recording: Recording, layout: Layout) -> tuple[ErrorStream, ...]:
+    """Lay a recording out for the kernel, a stream for each axis.
 
     Raises
     ------
     RecordingError
-        If a recording has no reference, or no sample of it can be scored.
+        If the recording has no reference, or no sample of it can be scored.
     """
-    return tuple(
-        _stream(recording, axis, tilt, mounting, period_s)
-        for recording in recordings
-        for axis in AXES[axes]
-    )
+    return tuple(_whole(recording, axis, layout) for axis in AXES[layout.axes])
+
+
+def _whole(recording: Recording, axis: Axis, layout: Layout) -> ErrorStream:
+    stream = lay_out(recording, axis, layout)
+    if not len(stream.runs):
+        raise RecordingError(
+            f"{recording.name}: none of its {len(recording)} samples is valid with a reference"
+        )
+    return stream
 
 
 def reference_rad(recording: Recording, axis: Axis, mounting: Mounting) -> Vector:
@@ -89,43 +92,44 @@ def reference_rad(recording: Recording, axis: Axis, mounting: Mounting) -> Vecto
     return roll_from_up(up) if axis == "roll" else pitch_from_up(up)
 
 
-def _stream(
-    recording: Recording, axis: Axis, tilt: TiltMethod, mounting: Mounting, period_s: float
+def lay_out(
+    recording: Recording, axis: Axis, layout: Layout, before_rad: float | None = None
 ) -> ErrorStream:
-    reference = reference_rad(recording, axis, mounting)
-    scored = recording.valid & np.isfinite(reference)
-    if not scored.any():
-        raise RecordingError(
-            f"{recording.name}: none of its {len(recording)} samples is valid with a reference"
-        )
-    # The filter does not see the reference, so any value may stand where it is lost.
-    reference = np.where(np.isfinite(reference), reference, 0.0)
-    force_g = to_body(mounting, recording.specific_force_m_s2) / STANDARD_GRAVITY_M_S2
-    rate = to_body(mounting, recording.angular_rate_rad_s)[:, RATE_AXIS[axis]]
-    start = wrap_rad(measured_tilt_rad(axis, tilt, force_g) - reference)
-    drive = rate * period_s - wrap_rad(np.diff(reference, prepend=reference[0])) - start
-    drive[0] = 0.0
-    return ErrorStream(drive=drive, start=start, scored=scored)
-
-
-def cost(streams: tuple[ErrorStream, ...], objective: Objective, eta: Vector) -> Vector:
-    """Return the cost of each eta, rad, shape ``(P,)``: the mean over recordings and axes.
-
-    Every recording counts the same, however long it is.
+    """Lay out one axis of a recording, or of a part of one.
 
     Parameters
     ----------
-    objective
-        ``rmse``, or ``mae`` for the mean absolute error of the paper (equation 10).
-    eta
-        Weights of the integrated rate, shape ``(P,)``.
+    before_rad
+        Reference of the sample before the part; None if the filter starts here.
+
+    Raises
+    ------
+    RecordingError
+        If the recording has no reference.
     """
-    costs = [[_cost(stream, objective, float(value)) for stream in streams] for value in eta]
-    return np.asarray(np.mean(costs, axis=1))
-
-
-def _cost(stream: ErrorStream, objective: Objective, eta: float) -> float:
-    error = lfilter([1.0], [1.0, -eta], eta * stream.drive + stream.start)[stream.scored]
-    if objective == "mae":
-        return float(np.mean(np.abs(error)))
-    return math.sqrt(float(np.vdot(error, error)) / len(error))
+    reference = reference_rad(recording, axis, layout.mounting)
+    scored = recording.valid & np.isfinite(reference)
+    # The filter does not see the reference, so any value may stand where it is lost.
+    reference = np.where(np.isfinite(reference), reference, 0.0)
+    body = to_body(layout.mounting, recording.angular_rate_rad_s)
+    rate_step = body[:, RATE_AXIS[axis]] * layout.period_s
+    force_g = to_body(layout.mounting, recording.specific_force_m_s2) / STANDARD_GRAVITY_M_S2
+    start = wrap_rad(measured_tilt_rad(axis, layout.tilt, force_g) - reference)
+    first = reference[0] if before_rad is None else before_rad
+    reference_step = wrap_rad(np.diff(reference, prepend=first))
+    drive = rate_step - reference_step - start
+    if before_rad is None:
+        rate_step[0] = drive[0] = 0.0
+    deviation = np.abs(np.linalg.norm(force_g, axis=1) - 1.0)
+    kept = {"drive": drive, "start": start, "reference": reference}
+    if layout.full:
+        kept |= {
+            "rate_step": rate_step,
+            "reference_step": reference_step,
+            "force_deviation": deviation,
+        }
+    return ErrorStream(
+        runs=runs_of(scored),
+        bias_limit_rad=BIAS_LIMIT_RAD_S * layout.period_s,
+        **{name: column.astype(layout.dtype) for name, column in kept.items()},
+    )

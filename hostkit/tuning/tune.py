@@ -1,69 +1,65 @@
-"""Finding a design: the swarm over log tau on the error of the filter."""
+"""Finding a design: from recordings to a tuned filter and what is known of it."""
 
-import math
 import platform
-from dataclasses import dataclass, field, replace
+import tempfile
+from dataclasses import dataclass, replace
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit import __version__
 from hostkit.errors import RecordingError
-from hostkit.filters.complementary import eta_from_tau, parameters
-from hostkit.mounting import Mounting
-from hostkit.optimisers import OPTIMISERS, SwarmResult
-from hostkit.recordings import Recording
-from hostkit.records import (
-    AxisChoice,
-    FilterDesign,
-    Objective,
-    RecordingDigest,
-    SensorConfig,
-    TiltMethod,
-    TuningRecord,
-)
-from hostkit.sensors import SENSORS
-from hostkit.sensors.part import Range, SensorPart
+from hostkit.optimisers import SwarmResult
+from hostkit.recordings import LargeRecording, Recording
+from hostkit.records import FilterDesign, RecordingDigest, TuningRecord
+from hostkit.tuning.determination import Interval, Profile, intervals, profiles, remarks
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
-from hostkit.tuning.objective import cost, prepare
-from hostkit.units import DEG_PER_RAD, STANDARD_GRAVITY_M_S2
+from hostkit.tuning.kernel import StreamSource
+from hostkit.tuning.objective import Layout, prepare
+from hostkit.tuning.options import TuningOptions
+from hostkit.tuning.problem import Problem
+from hostkit.tuning.retuning import HeldOut, bootstrap, cross_validate
+from hostkit.tuning.search import choose_optimiser, search
+from hostkit.tuning.sensor_choice import sensor_config
+from hostkit.tuning.space import search_space
+from hostkit.tuning.spool import spool
+from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]
-
-TAU_BOUNDS_S = (0.02, 100.0)
-"""Range of the time constant that the paper searches."""
-
-RANGE_MARGIN = 1.5
-"""A full scale must exceed the largest reading by this factor: the next motion may be faster."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TuningOptions:
-    """What the user decides about a tuning."""
-
-    axes: AxisChoice = "both"
-    mounting: Mounting = field(default_factory=Mounting)
-    tilt: TiltMethod = "atan2"
-    objective: Objective = "rmse"
-    optimiser: str = "qpso"
-    particles: int = 20
-    iterations: int = 100
-    seed: int = 1
-    sensor: SensorConfig | None = None
+AnyRecording = Recording | LargeRecording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TuningResult:
-    """A design, how the search went, and how the design does on its own recordings."""
+    """A design, how the search went, and how the design does.
+
+    Attributes
+    ----------
+    evaluations
+        The design on its own recordings.
+    rms_rad
+        Mean over them of the RMSE of the axis, or of the inclination: a training figure.
+    held_out
+        The same figure on what was left out; None if that was not asked for.
+    intervals, profiles
+        The tuned parameters, and the cost along each of them.
+    remarks
+        What the recordings do not determine, one sentence each.
+    """
 
     design: FilterDesign
     swarm: SwarmResult
     evaluations: tuple[Evaluation, ...]
     rms_rad: float
+    held_out: HeldOut | None
+    intervals: tuple[Interval, ...]
+    profiles: tuple[Profile, ...]
+    remarks: tuple[str, ...]
 
 
-def tune(recordings: tuple[Recording, ...], options: TuningOptions) -> TuningResult:
+def tune(recordings: tuple[AnyRecording, ...], options: TuningOptions) -> TuningResult:
     """Tune the complementary filter on recordings that have a reference.
 
     Raises
@@ -71,67 +67,114 @@ def tune(recordings: tuple[Recording, ...], options: TuningOptions) -> TuningRes
     RecordingError
         If a recording has no reference or no valid sample, or the rates differ.
     HostkitError
-        If an option is not possible.
+        If an option is not possible, or the cost is finite nowhere.
     """
-    rate_hz = _common_rate(recordings)
-    streams = prepare(
-        recordings,
-        axes=options.axes,
-        tilt=options.tilt,
-        mounting=options.mounting,
-        period_s=1.0 / rate_hz,
-    )
+    with tempfile.TemporaryDirectory(prefix="hostkit-") as folder:
+        problem = tuning_problem(recordings, options, Path(folder))
+        return _tune(problem, recordings, options)
 
-    def swarm_cost(log_tau: Vector) -> Vector:
-        tau_s = np.exp(log_tau[:, 0])
-        return cost(streams, options.objective, tau_s / (tau_s + 1.0 / rate_hz))
 
-    swarm = OPTIMISERS[options.optimiser].minimise(
-        swarm_cost,
-        np.log(TAU_BOUNDS_S[:1]),
-        np.log(TAU_BOUNDS_S[1:]),
-        particles=options.particles,
-        iterations=options.iterations,
-        rng=np.random.default_rng(options.seed),
-    )
-    eta = eta_from_tau(math.exp(swarm.x[0]), 1.0 / rate_hz)
-    untuned = FilterDesign(
+def _tune(
+    problem: Problem, recordings: tuple[AnyRecording, ...], options: TuningOptions
+) -> TuningResult:
+    rate_hz = recordings[0].rate_hz
+    optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
+    swarm = search(problem, options, optimiser)
+    design = FilterDesign(
         filter="complementary",
         axes=options.axes,
         tilt=options.tilt,
         mounting=options.mounting,
         rate_hz=rate_hz,
         sensor=options.sensor or sensor_config(recordings, rate_hz),
-        parameters=parameters(eta),
+        parameters=problem.space.design_parameters(swarm.x),
     )
-    return _result(untuned, swarm, recordings, options)
-
-
-def _result(
-    design: FilterDesign,
-    swarm: SwarmResult,
-    recordings: tuple[Recording, ...],
-    options: TuningOptions,
-) -> TuningResult:
-    evaluations = tuple(evaluate(design, recording) for recording in recordings)
-    rms = headline_rms_rad(design, evaluations)
-    assert rms is not None
-    record = TuningRecord(
-        objective=options.objective,
-        optimiser=options.optimiser,
-        seed=options.seed,
-        particles=options.particles,
-        iterations=options.iterations,
-        evaluations=swarm.evaluations,
-        rmse_deg=round(rms * DEG_PER_RAD, 9),
-        recordings=tuple(
-            RecordingDigest(name=r.name, sha256=r.sha256, samples=len(r)) for r in recordings
-        ),
-        versions=versions(),
-    )
+    evaluations = tuple(evaluate(design, _in_memory(recording)) for recording in recordings)
+    rms = _training_rms_rad(design, problem, swarm.x, recordings, evaluations)
+    held_out = cross_validate(problem, options) if options.held_out else None
+    again = bootstrap(problem, options)
+    walked = profiles(problem, swarm.x)
+    record = _record(recordings, options, optimiser, swarm, rms, held_out)
     return TuningResult(
-        design=replace(design, tuning=record), swarm=swarm, evaluations=evaluations, rms_rad=rms
+        design=replace(design, tuning=record),
+        swarm=swarm,
+        evaluations=evaluations,
+        rms_rad=rms,
+        held_out=held_out,
+        intervals=intervals(problem.space.dimensions, swarm.x, again),
+        profiles=walked,
+        remarks=remarks(problem, swarm.x, swarm.cost, walked),
     )
+
+
+def tuning_problem(
+    recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path
+) -> Problem:
+    """Lay recordings out for the search.
+
+    Parameters
+    ----------
+    folder
+        Where recordings that do not fit the memory are laid out.
+
+    Raises
+    ------
+    RecordingError
+        If a recording has no reference or no valid sample, or the rates differ.
+    DesignError
+        If the free and fixed parameters do not go together.
+    """
+    period_s = 1.0 / _common_rate(recordings)
+    space = search_space(options.axes, period_s, options.free, options.fixed, options.ranges)
+    layout = Layout(
+        axes=options.axes,
+        tilt=options.tilt,
+        mounting=options.mounting,
+        period_s=period_s,
+        full=not space.plain,
+        dtype=np.dtype(options.precision),
+    )
+    streams = tuple(
+        _streams(recording, layout, folder / str(i)) for i, recording in enumerate(recordings)
+    )
+    return Problem(
+        space=space,
+        streams=streams,
+        objective=options.objective,
+        jobs=options.jobs,
+        dtype=np.dtype(options.precision),
+    )
+
+
+def _streams(recording: AnyRecording, layout: Layout, folder: Path) -> tuple[StreamSource, ...]:
+    if isinstance(recording, LargeRecording):
+        folder.mkdir()
+        return spool(recording, replace(layout, dtype=np.float32), folder)
+    return prepare(recording, layout)
+
+
+def _in_memory(recording: AnyRecording) -> Recording:
+    """Return what both models are run on: the recording, or the first part of a large one."""
+    return recording.head if isinstance(recording, LargeRecording) else recording
+
+
+def _training_rms_rad(
+    design: FilterDesign,
+    problem: Problem,
+    x: Vector,
+    recordings: tuple[AnyRecording, ...],
+    evaluations: tuple[Evaluation, ...],
+) -> float:
+    """Return the figure of the integer model, or of the error form where that is too long."""
+    each = []
+    for i, (recording, evaluation) in enumerate(zip(recordings, evaluations, strict=True)):
+        if isinstance(recording, LargeRecording):
+            each.append(problem.rms_rad(x, i))
+        else:
+            own = headline_rms_rad(design, (evaluation,))
+            assert own is not None
+            each.append(own)
+    return float(np.mean(each))
 
 
 def headline_rms_rad(design: FilterDesign, evaluations: tuple[Evaluation, ...]) -> float | None:
@@ -150,51 +193,34 @@ def versions() -> tuple[tuple[str, str], ...]:
     )
 
 
-def _common_rate(recordings: tuple[Recording, ...]) -> float:
+def _record(
+    recordings: tuple[AnyRecording, ...],
+    options: TuningOptions,
+    optimiser: str,
+    swarm: SwarmResult,
+    rms_rad: float,
+    held_out: HeldOut | None,
+) -> TuningRecord:
+    return TuningRecord(
+        objective=options.objective,
+        optimiser=optimiser,
+        seed=options.seed,
+        particles=options.particles,
+        iterations=options.iterations,
+        evaluations=swarm.evaluations,
+        rmse_deg=round(rms_rad * DEG_PER_RAD, 9),
+        held_out_rmse_deg=(None if held_out is None else round(held_out.rms_rad * DEG_PER_RAD, 6)),
+        recordings=tuple(
+            RecordingDigest(name=r.name, sha256=r.sha256, samples=len(r)) for r in recordings
+        ),
+        versions=versions(),
+    )
+
+
+def _common_rate(recordings: tuple[AnyRecording, ...]) -> float:
     if not recordings:
         raise RecordingError("there is no recording to tune on; name at least one")
     rate_hz = recordings[0].rate_hz
     for recording in recordings:
         require_rate(rate_hz, recording)
     return rate_hz
-
-
-def sensor_config(
-    recordings: tuple[Recording, ...],
-    rate_hz: float,
-    *,
-    gyro_full_scale_deg_s: int | None = None,
-    accel_full_scale_g: int | None = None,
-    low_pass_setting: int | None = None,
-    part: str = "mpu6050",
-) -> SensorConfig:
-    """Return a sensor configuration that fits recordings; what is given is kept.
-
-    The ranges are the narrowest that hold every reading one and a half times, the widest where none
-    does. The low-pass filter is the widest whose bandwidth stays below half the sample rate.
-    """
-    sensor = SENSORS[part]
-    rate_deg_s = max(float(np.abs(r.angular_rate_rad_s).max()) for r in recordings) * DEG_PER_RAD
-    force_g = (
-        max(float(np.abs(r.specific_force_m_s2).max()) for r in recordings) / STANDARD_GRAVITY_M_S2
-    )
-    return SensorConfig(
-        part=part,
-        gyro_full_scale_deg_s=gyro_full_scale_deg_s or _narrowest(sensor.gyro_ranges, rate_deg_s),
-        accel_full_scale_g=accel_full_scale_g or _narrowest(sensor.accel_ranges, force_g),
-        low_pass_setting=(
-            _low_pass_setting(sensor, rate_hz) if low_pass_setting is None else low_pass_setting
-        ),
-    )
-
-
-def _narrowest(ranges: tuple[Range, ...], largest: float) -> int:
-    fitting = [r.full_scale for r in ranges if r.full_scale >= RANGE_MARGIN * largest]
-    return fitting[0] if fitting else ranges[-1].full_scale
-
-
-def _low_pass_setting(sensor: SensorPart, rate_hz: float) -> int:
-    """Return the widest filter below half the rate among those that keep the 1 kHz clock."""
-    filters = [lp for lp in sensor.low_passes if lp.gyro_rate_hz == sensor.sample_base_rate_hz]
-    fitting = [lp for lp in filters if lp.gyro_bandwidth_hz <= rate_hz / 2.0]
-    return (fitting or filters[-1:])[0].setting

@@ -58,7 +58,9 @@ def test_tune_tells_eta_tau_crossover_and_rate_together(hostkit, recording: str)
 
 
 def test_tune_json_is_one_document_with_the_contracts_keys(hostkit, recording: str) -> None:
-    code, out, _ = hostkit("tune", recording, "-o", "d.json", "--seed", "7", "--json")
+    code, out, _ = hostkit(
+        *("tune", recording, "-o", "d.json", "--seed", "7", "--json", "--optimiser", "qpso")
+    )
     document = json.loads(out)
     assert code == 0
     wanted = "schema design digest filter parameters eta tau_s rate_hz rmse_deg evaluations "
@@ -203,7 +205,7 @@ def test_monitor_refuses_another_digest(hostkit, recording: str, design: str) ->
 
 
 def test_project_file_environment_and_command_line(hostkit, monkeypatch, recording: str) -> None:
-    Path("hostkit.toml").write_text("[tune]\nseed = 5\niterations = 4\n")
+    Path("hostkit.toml").write_text("[tune]\nseed = 5\niterations = 4\noptimiser = 'qpso'\n")
     assert json.loads(hostkit("tune", recording, "--json")[1])["seed"] == 5
     monkeypatch.setenv("HOSTKIT_TUNE_SEED", "6")
     assert json.loads(hostkit("tune", recording, "--json")[1])["seed"] == 6

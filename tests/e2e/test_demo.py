@@ -50,7 +50,7 @@ def test_demo_passes_and_its_report_stands_alone(
     ]
     page = Page()
     page.feed(Path(document["report"]).read_text(encoding="utf-8"))
-    assert page.tags.count("svg") == 5
+    assert page.tags.count("svg") == 6
     assert "script" not in page.tags
     assert page.links == []
     for wanted in ("verdict: pass", "Convergence", "Fit", "Residual of each device", "Provenance"):

@@ -4,31 +4,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from designs import design
+from recorded import SENSOR, problem, recorded
 
 from hostkit.attitude import up_from_tilt, wrap_rad
 from hostkit.errors import HostkitError, RecordingError
-from hostkit.filters.complementary import parameters, run_float
-from hostkit.mounting import Mounting
+from hostkit.filters.complementary import parameters, run_float, tau_from_eta
 from hostkit.recordings import Recording
 from hostkit.records import AXES
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.tuning import TuningOptions, evaluate, mean_rms_rad, sensor_config, tune
-from hostkit.tuning.objective import cost, prepare, reference_rad
-from hostkit.tuning.tune import TAU_BOUNDS_S
+from hostkit.tuning.objective import reference_rad
 from hostkit.units import STANDARD_GRAVITY_M_S2
-
-SENSOR = design(accel_full_scale_g=4).sensor
-
-
-def recorded(profile: str = "steps", *, seed: int = 1, duration_s: float = 10.0) -> Recording:
-    return simulate(
-        profile,
-        duration_s=duration_s,
-        rate_hz=100.0,
-        sensor=SENSOR,
-        errors=SensorErrors(vibration_m_s2=2.0),
-        rng=np.random.default_rng(seed),
-    )
 
 
 def filter_cost(d, recording: Recording, objective: str) -> float:
@@ -57,42 +43,75 @@ def test_error_form_is_the_filter(objective, axes, tilt, eta) -> None:
     valid[:50] = False
     recording = replace(recording, up_reference=lost, valid=valid)
     d = replace(design(axes=axes, tilt=tilt), parameters=parameters(eta))
-    streams = prepare((recording,), axes=axes, tilt=tilt, mounting=d.mounting, period_s=0.01)
-    found = cost(streams, objective, np.array([eta]))[0]
+    p = problem(recording, axes=axes, tilt=tilt, objective=objective)
+    found = p.cost(np.array([[math.log(tau_from_eta(eta, 0.01))]]))[0]
     assert found == pytest.approx(filter_cost(d, recording, objective), rel=1e-9)
 
 
 def test_every_recording_counts_the_same_however_long() -> None:
     long, short = recorded(duration_s=20.0), recorded("sine-sweep", duration_s=5.0)
-    options = {"axes": "roll", "tilt": "atan2", "mounting": Mounting(), "period_s": 0.01}
-    eta = np.array([0.97])
-    apart = [cost(prepare((r,), **options), "rmse", eta)[0] for r in (long, short)]
-    together = cost(prepare((long, short), **options), "rmse", eta)[0]
-    assert together == pytest.approx(np.mean(apart), rel=1e-12)
+    x = np.array([[math.log(0.3)]])
+    apart = [problem(recording).cost(x)[0] for recording in (long, short)]
+    assert problem(long, short).cost(x)[0] == pytest.approx(np.mean(apart), rel=1e-12)
 
 
+@pytest.mark.parametrize("optimiser", ["auto", "qpso", "pso", "awp", "differential-evolution"])
 @pytest.mark.parametrize("objective", ["rmse", "mae"])
-def test_optimum_is_that_of_a_dense_grid(objective: str) -> None:
+def test_optimum_is_that_of_a_dense_grid(objective: str, optimiser: str) -> None:
     recording = recorded()
-    result = tune((recording,), TuningOptions(axes="roll", objective=objective, sensor=SENSOR))
-    streams = prepare((recording,), axes="roll", tilt="atan2", mounting=Mounting(), period_s=0.01)
-    tau_s = np.geomspace(*TAU_BOUNDS_S, 4000)
-    grid = cost(streams, objective, tau_s / (tau_s + 0.01))
+    options = TuningOptions(axes="roll", objective=objective, sensor=SENSOR, optimiser=optimiser)
+    result = tune((recording,), options)
+    tau_s = np.geomspace(0.02, 100.0, 4000)
+    grid = problem(recording, objective=objective).cost(np.log(tau_s)[:, None])
     assert result.swarm.cost <= grid.min() + 1e-9
-    tau = 0.01 * result.design.parameter("eta") / (1 - result.design.parameter("eta"))
+    tau = tau_from_eta(result.design.parameter("eta"), 0.01)
     assert tau == pytest.approx(tau_s[grid.argmin()], rel=0.01)
-    assert result.swarm.evaluations == 2020
     assert not result.swarm.at_bound.any()
+    assert not result.remarks
+
+
+def test_one_parameter_takes_no_swarm_unless_asked() -> None:
+    recording = recorded()
+    auto = tune((recording,), TuningOptions(axes="roll", sensor=SENSOR))
+    assert auto.design.tuning.optimiser == "grid-brent"
+    assert auto.swarm.evaluations < 100
+    swarm = tune((recording,), TuningOptions(axes="roll", sensor=SENSOR, optimiser="qpso"))
+    assert swarm.design.tuning.optimiser == "qpso"
+    assert swarm.swarm.evaluations == 2020
+    several = TuningOptions(axes="roll", sensor=SENSOR, free=("tau", "gate"), resamples=0)
+    assert tune((recording,), several).design.tuning.optimiser == "qpso"
+
+
+def test_restarts_keep_the_best_and_count_all() -> None:
+    recording = recorded(duration_s=5.0)
+    options = TuningOptions(
+        axes="roll",
+        sensor=SENSOR,
+        free=("tau", "gate"),
+        particles=4,
+        iterations=5,
+        held_out=False,
+        resamples=0,
+    )
+    once = tune((recording,), options)
+    thrice = tune((recording,), replace(options, restarts=3))
+    assert thrice.swarm.evaluations == 3 * once.swarm.evaluations
+    assert thrice.swarm.cost <= once.swarm.cost
+    assert tune((recording,), replace(options, restarts=3, jobs=3)).design == thrice.design
 
 
 def test_design_remembers_how_it_was_found() -> None:
     recording = recorded()
-    result = tune((recording,), TuningOptions(seed=11, iterations=5, sensor=SENSOR))
+    options = TuningOptions(seed=11, iterations=5, sensor=SENSOR, optimiser="qpso")
+    result = tune((recording,), options)
     record = result.design.tuning
     assert (record.seed, record.iterations, record.evaluations) == (11, 5, 120)
     assert record.recordings[0].samples == len(recording)
     assert record.rmse_deg == pytest.approx(math.degrees(result.rms_rad))
-    again = tune((recording,), TuningOptions(seed=11, iterations=5, sensor=SENSOR))
+    assert record.held_out_rmse_deg == pytest.approx(
+        math.degrees(result.held_out.rms_rad), abs=1e-6
+    )
+    again = tune((recording,), options)
     assert again.design == result.design
 
 
