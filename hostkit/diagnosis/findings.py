@@ -208,7 +208,7 @@ def _force(diagnosis: Diagnosis) -> Finding:
         f"| |f| - 1 g | is up to {half:.3f} g for {PERCENTILES[0]:g} % and up to {most:.3f} g for "
         f"{PERCENTILES[-2]:g} % of the samples"
     )
-    action = "tune with a gate, which passes over the force of such samples" if moved else ""
+    action = "try --free tau,gate and compare the errors on what was left out" if moved else ""
     return Finding(topic="force", level="look" if moved else "ok", sentence=text, action=action)
 
 
