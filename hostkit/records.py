@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.errors import DesignError
-from hostkit.fixedpoint import Coefficient
 from hostkit.mounting import Mounting
 
 Axis = Literal["roll", "pitch"]
@@ -64,7 +63,8 @@ class RecordingDigest:
 class TuningRecord:
     """How a design was found, so that it can be found again.
 
-    `rmse_deg` is the figure on the recordings named here, that is, a training figure.
+    `rmse_deg` is the figure on the recordings named here, that is, a training figure;
+    `held_out_rmse_deg` is the one on recordings while they were left out.
     """
 
     objective: Objective
@@ -76,6 +76,7 @@ class TuningRecord:
     rmse_deg: float
     recordings: tuple[RecordingDigest, ...]
     versions: tuple[tuple[str, str], ...]
+    held_out_rmse_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,51 +119,6 @@ class FilterDesign:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CordicTable:
-    """Constants of the CORDIC that replaces libm: the same in C, VHDL and Python.
-
-    `angles_raw` are ``round(atan(2**-i) / pi * 2**31)`` half-turn units; `guard_bits` is how far
-    counts are shifted left before the first step.
-    """
-
-    guard_bits: int
-    angles_raw: tuple[int, ...]
-    gain: Coefficient
-
-    @property
-    def steps(self) -> int:
-        """Number of micro-rotations."""
-        return len(self.angles_raw)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixedPointSpec:
-    """A design in integers: all that templates and the integer model know of the filter.
-
-    Attributes
-    ----------
-    rate_gain
-        Half-turn units of angle per count of angular rate and sample.
-    blend
-        1 - eta, the weight of the tilt measured from specific force.
-    gravity_count
-        Accelerometer count of 1 g.
-    error_bound_rad
-        Largest difference to the float model on counts, for the conditions its filter states.
-    """
-
-    filter: str
-    axes: tuple[Axis, ...]
-    tilt: TiltMethod
-    mounting: Mounting
-    rate_gain: Coefficient
-    blend: Coefficient
-    cordic: CordicTable
-    gravity_count: int
-    error_bound_rad: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class GeneratedFile:
     """One rendered file: a relative POSIX path and its content."""
 
@@ -182,8 +138,9 @@ class AngleTrace:
         Device time of the sample, shape ``(N,)``.
     accel_count, gyro_count
         Raw counts in sensor axes, shape ``(N, 3)``.
-    angle_raw
-        Angles of the filter after the sample, half turns, shape ``(N, A)``, in the design's axes.
+    state_raw
+        State of the filter after the sample, shape ``(N, S)``: the angles of the design's axes in
+        half turns, then the hidden words.
     restarted
         True where the filter loaded the measured tilt instead of stepping, shape ``(N,)``.
     """
@@ -192,14 +149,14 @@ class AngleTrace:
     time_us: NDArray[np.int64]
     accel_count: NDArray[np.int64]
     gyro_count: NDArray[np.int64]
-    angle_raw: NDArray[np.int64]
+    state_raw: NDArray[np.int64]
     restarted: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         for array in (self.sequence, self.time_us, self.accel_count, self.gyro_count):
             read_only(array)
-        read_only(self.angle_raw)
+        read_only(self.state_raw)
         read_only(self.restarted)
 
     def __len__(self) -> int:

@@ -13,7 +13,7 @@ from hostkit.filters import FILTERS
 from hostkit.records import AngleTrace, FilterDesign, ValidationReport
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
-from hostkit.units import DEG_PER_RAD, RAD_PER_HALF_TURN_LSB
+from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -43,24 +43,29 @@ class Thresholds:
 class Validator:
     """Compares a device with the integer and the float model of a design.
 
-    Every step is computed again from the raw counts and the angles *before* it, which the device
+    Every step is computed again from the raw counts and the state *before* it, which the device
     sent with the previous sample, so that a loss costs the check of one step and no more. The
-    float model runs on from step to step; after a loss it starts from the device's angles.
+    float model runs on from step to step; after a loss it starts from the device's state.
 
     Parameters
     ----------
     design
         The design the device is said to run.
+
+    Attributes
+    ----------
+    spec
+        The design in integers.
     """
 
     def __init__(self, design: FilterDesign) -> None:
         self._design = design
         self._filter = FILTERS[design.filter]
         self._part = SENSORS[design.sensor.part]
-        self._spec = self._filter.lower(design)
+        self.spec = self._filter.lower(design)
         self._sequence: int | None = None
-        self._angle: IntArray | None = None
-        self._float_rad: Vector | None = None
+        self._state: IntArray | None = None
+        self._float_state: Vector | None = None
         self.samples = 0
         self.checked = 0
         self.lost = 0
@@ -79,13 +84,13 @@ class Validator:
             was started from the device.
         """
         if not len(trace):
-            return np.empty((0, len(self._spec.axes)))
+            return np.empty((0, len(self.spec.axes)))
         follows = self._follows(trace)
         self._check_steps(trace, follows)
         residual = self._follow_float(trace, follows)
         self.samples += len(trace)
         self._sequence = int(trace.sequence[-1])
-        self._angle = trace.angle_raw[-1:]
+        self._state = trace.state_raw[-1:]
         return residual
 
     def _follows(self, trace: AngleTrace) -> NDArray[np.bool_]:
@@ -100,38 +105,37 @@ class Validator:
         return follows
 
     def _check_steps(self, trace: AngleTrace, follows: NDArray[np.bool_]) -> None:
-        before = trace.angle_raw[:1] if self._angle is None else self._angle
-        before = np.concatenate([before, trace.angle_raw[:-1]])
-        expected = self._filter.step_integer(
-            self._spec, before, trace.accel_count, trace.gyro_count
-        )
+        before = trace.state_raw[:1] if self._state is None else self._state
+        before = np.concatenate([before, trace.state_raw[:-1]])
+        expected = self._filter.step_integer(self.spec, before, trace.accel_count, trace.gyro_count)
         for k in np.flatnonzero(trace.restarted):
             one = slice(k, k + 1)
             expected[one] = self._filter.run_integer(
-                self._spec, trace.accel_count[one], trace.gyro_count[one]
+                self.spec, trace.accel_count[one], trace.gyro_count[one]
             )
         judged = follows | trace.restarted
-        wrong = (expected != trace.angle_raw).any(axis=1) & judged
+        wrong = (expected != trace.state_raw).any(axis=1) & judged
         self.checked += int(judged.sum())
         self.mismatches += int(wrong.sum())
 
     def _follow_float(self, trace: AngleTrace, follows: NDArray[np.bool_]) -> Vector:
         counts = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
         rate, force = to_rate_and_force_g(self._part, self._design.sensor, counts)
-        angle = trace.angle_raw * RAD_PER_HALF_TURN_LSB
-        exact = np.empty_like(angle)
+        device = trace.state_raw * np.array(self.spec.state_per_unit)
+        exact = np.empty_like(device)
         starts = [0, *(int(k) for k in np.flatnonzero(~follows) if k > 0), len(trace)]
         for begin, end in pairwise(starts):
-            state = self._float_rad
+            state = self._float_state
             if trace.restarted[begin]:
                 state = None
             elif not follows[begin]:
-                exact[begin], state, begin = angle[begin], angle[begin], begin + 1
+                exact[begin], state, begin = device[begin], device[begin], begin + 1
             run = slice(begin, end)
             if begin < end:
                 exact[run] = self._filter.run_float(self._design, rate[run], force[run], state)
-            self._float_rad = exact[end - 1]
-        residual = wrap_rad(angle - exact)
+            self._float_state = exact[end - 1]
+        axes = len(self.spec.axes)
+        residual = wrap_rad(device[:, :axes] - exact[:, :axes])
         judged = np.abs(residual[follows | trace.restarted])
         self._residual_count += judged.size
         self._squares += float(np.vdot(judged, judged))

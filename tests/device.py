@@ -26,33 +26,37 @@ class Device:
         noise = rng.normal(0, 40, (2, samples, 3))
         return tuple(np.round(np.stack([accel, gyro]) + noise).astype(np.int64))
 
-    def angles(self, samples: int) -> np.ndarray:
-        filter_ = FILTERS[self.design.filter]
-        angle = filter_.run_integer(filter_.lower(self.design), *self.counts(samples))
-        out = np.zeros((samples, 2), dtype=np.int64)
-        for i, axis in enumerate(AXES[self.design.axes]):
-            out[:, COLUMN[axis]] = angle[:, i]
+    def states(self, samples: int) -> np.ndarray:
+        """Roll, pitch and the two hidden words, as TILT_SAMPLE has them."""
+        filter_, axes = FILTERS[self.design.filter], AXES[self.design.axes]
+        state = filter_.run_integer(filter_.lower(self.design), *self.counts(samples))
+        out = np.zeros((samples, 4), dtype=np.int64)
+        for i, axis in enumerate(axes):
+            out[:, COLUMN[axis]] = state[:, i]
+        hidden = state[:, len(axes) :]
+        out[:, 2 : 2 + hidden.shape[1]] = hidden
         return out
 
-    def frames(self, samples: int, *, angles: np.ndarray | None = None) -> list[bytes]:
+    def frames(self, samples: int, *, states: np.ndarray | None = None) -> list[bytes]:
         """One heartbeat, then a sample each, with gapless frame numbers."""
         m = self.module
         accel, gyro = self.counts(samples)
-        angles = self.angles(samples) if angles is None else angles
+        states = self.states(samples) if states is None else states
         messages = [m.MAVLink_heartbeat_message(0, 0, 0, 0, 4, 3)]
         for k in range(samples):
             messages.append(
                 m.MAVLink_tilt_sample_message(
                     k * 10_000,
                     k,
-                    int(angles[k, 0]),
-                    int(angles[k, 1]),
+                    int(states[k, 0]),
+                    int(states[k, 1]),
                     accel[k].tolist(),
                     gyro[k].tolist(),
                     0,
                     0,
                     list(bytes.fromhex(self.digest)),
                     int(k == 0),
+                    states[k, 2:].tolist(),
                 )
             )
         return [self._pack(message) for message in messages]

@@ -89,6 +89,7 @@ bool hk_telemetry_sample(hk_telemetry_t *telemetry, const hk_filter_t *filter,
                          const hk_mpu6050_sample_t *sample, const hk_sample_facts_t *facts)
 {
     static const uint8_t digest[] = HK_DESIGN_DIGEST_BYTES;
+    const int32_t hidden[MAVLINK_MSG_TILT_SAMPLE_FIELD_HIDDEN_LEN] = HK_FILTER_HIDDEN(filter);
     mavlink_message_t message;
     uint8_t flags = 0U;
 
@@ -101,6 +102,7 @@ bool hk_telemetry_sample(hk_telemetry_t *telemetry, const hk_filter_t *filter,
     (void)mavlink_msg_tilt_sample_pack_status(
         HK_SYSTEM_ID, HK_COMPONENT_ID, &telemetry->status, &message, facts->time_us,
         facts->sequence, filter->angle[HK_ROLL], filter->angle[HK_PITCH], sample->accel,
-        sample->gyro, sample->temperature, facts->i2c_errors, digest, flags);
+        sample->gyro, sample->temperature, facts->i2c_errors, digest, flags,
+        hidden);
     return queue(&message);
 }

@@ -1,11 +1,13 @@
 -- The complementary tilt filter. Takes raw counts in sensor axes; per axis it measures the tilt
 -- from specific force, predicts with the angular rate, and corrects the prediction with the wrapped
--- difference. The first sample after reset loads the measured tilt. One sample at a time.
+-- difference, and the bias of the gyroscope with it. The first sample after reset loads the measured
+-- tilt. One sample at a time. What a design does not use is switched off by constants.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
 use work.hk_common_pkg.all;
+use work.hk_complementary_pkg.all;
 use work.hk_design_pkg.all;
 
 entity hk_complementary is
@@ -24,6 +26,8 @@ entity hk_complementary is
     out_ready     : in  std_logic;
     angle_roll    : out signed(31 downto 0);  -- half turns, wraps at +-pi; 0 if not in the design
     angle_pitch   : out signed(31 downto 0);
+    bias_roll     : out signed(31 downto 0);  -- of the gyroscope, half turns per sample with
+    bias_pitch    : out signed(31 downto 0);  -- bias_fraction_bits_c; 0 without an integral
     restarted     : out std_logic;            -- this sample loaded the measured tilt
     design_digest : out std_logic_vector(47 downto 0)  -- constant: which design this core is
   );
@@ -31,13 +35,8 @@ end entity hk_complementary;
 
 architecture rtl of hk_complementary is
 
-  constant gain_shift_c    : positive := cordic_gain_fraction_bits_c - cordic_guard_bits_c;
-  constant root_shift_c    : natural  := cordic_guard_bits_c - root_fraction_bits_c;
-  constant root_integers_c : positive := 15;  -- 1 g is at most 2**14 counts
-
-  type axis_t is (roll, pitch);
-  type count_array_t is array (axis_t) of signed(16 downto 0);
-  type angle_array_t is array (axis_t) of signed(31 downto 0);
+  constant gain_shift_c : positive := cordic_gain_fraction_bits_c - cordic_guard_bits_c;
+  constant root_shift_c : natural  := cordic_guard_bits_c - root_fraction_bits_c;
 
   -- In order, one clock each but for idle, the waits and finished.
   type state_t is (
@@ -48,15 +47,18 @@ architecture rtl of hk_complementary is
     rate_pitch,
     predict_roll,
     predict_pitch,
+    squares,        -- with a gate only: five clocks for the square of the specific force
     wait_root,      -- arc sine only
     wait_angle,     -- then multiply the innovation
     correct,
+    learn,          -- with an integral only: change the bias, which update limits
     update,
     finished
   );
   signal state_r : state_t;
 
   signal angle_r     : angle_array_t;
+  signal bias_r      : angle_array_t;
   signal restart_r   : std_logic;
   signal restarted_r : std_logic;
 
@@ -81,48 +83,44 @@ architecture rtl of hk_complementary is
   signal force_angle    : signed(31 downto 0);
   signal magnitude      : signed(31 downto 0);
 
-  function first_axis return axis_t is
+  function first_wait return state_t is
   begin
-    -- The arc tangent of pitch needs the magnitude that the one of roll leaves.
-    if uses_arcsin_c and not has_roll_c then
-      return pitch;
+    if uses_arcsin_c then
+      return wait_root;
     end if;
-    return roll;
-  end function first_axis;
-
-  function with_guard_bits (count : signed(16 downto 0)) return signed is
-  begin
-    return shift_left(resize(count, 32), cordic_guard_bits_c);
-  end function with_guard_bits;
-
-  -- What is left of 1 g beside a component, from the square of the component.
-  function rest_of_square (square : signed(49 downto 0)) return unsigned is
-  begin
-    return to_unsigned(gravity_count_c * gravity_count_c, 2 * root_integers_c)
-           - unsigned(square(2 * root_integers_c - 1 downto 0));
-  end function rest_of_square;
+    return wait_angle;
+  end function first_wait;
 
 begin
 
-  in_ready      <= '1' when state_r = idle else '0';
-  out_valid     <= '1' when state_r = finished else '0';
-  angle_roll    <= angle_r(roll);
-  angle_pitch   <= angle_r(pitch);
-  restarted     <= restarted_r;
-  design_digest <= design_digest_c;
+  in_ready    <= '1' when state_r = idle else '0';
+  out_valid   <= '1' when state_r = finished else '0';
+  angle_roll  <= angle_r(roll);
+  angle_pitch <= angle_r(pitch);
+  bias_roll   <= bias_r(roll) when has_integral_c else (others => '0');
+  bias_pitch  <= bias_r(pitch) when has_integral_c else (others => '0');
+  restarted   <= restarted_r;
+
+  -- In halves, because GHDL 2.0 converts a constant of more than 32 bits wrongly.
+  design_digest(47 downto 24) <= design_digest_c(47 downto 24);
+  design_digest(23 downto 0)  <= design_digest_c(23 downto 0);
 
   root_taken   <= '1' when state_r = wait_root else '0';
   cordic_taken <= '1' when state_r = wait_angle else '0';
 
   main : process (clk)
-    variable axis_v        : axis_t;
-    variable component_v   : count_array_t;  -- of specific force, rises with the angle
-    variable force_z_v     : signed(16 downto 0);
-    variable rate_v        : count_array_t;
-    variable predicted_v   : angle_array_t;
-    variable opposite_v    : signed(31 downto 0);  -- pitch component times the CORDIC gain
-    variable radicand_v    : unsigned(2 * root_integers_c - 1 downto 0);
-    variable force_angle_v : signed(31 downto 0);
+    variable axis_v      : axis_t;
+    variable component_v : count_array_t;  -- of specific force, rises with the angle
+    variable force_z_v   : signed(16 downto 0);
+    variable force_v     : force_t;        -- sensor axes; the next to be squared is the first
+    variable rate_v      : count_array_t;
+    variable predicted_v : angle_array_t;
+    variable opposite_v  : signed(31 downto 0);  -- pitch component times the CORDIC gain
+    variable radicand_v  : unsigned(2 * root_integers_c - 1 downto 0);
+    variable clocks_v    : unsigned(2 downto 0);   -- in the state of the squares
+    variable square_v    : unsigned(31 downto 0);  -- of the specific force: at most 3 * 2**30
+    variable corrects_v  : boolean;
+    variable tilt_v      : signed(31 downto 0);
   begin
     if rising_edge(clk) then
       multiply_r <= '0';
@@ -140,6 +138,7 @@ begin
           force_z_v          := body_count(body_z_c, accel_x, accel_y, accel_z);
           rate_v(roll)       := body_count(body_x_c, gyro_x, gyro_y, gyro_z);
           rate_v(pitch)      := body_count(body_y_c, gyro_x, gyro_y, gyro_z);
+          force_v            := (accel_x, accel_y, accel_z);
           axis_v             := first_axis;
           state_r            <= force_roll;
         end if;
@@ -155,6 +154,10 @@ begin
           cordic_x_r     <= with_guard_bits(force_z_v);
           cordic_y_r     <= with_guard_bits(component_v(roll));
           cordic_start_r <= '1';
+        end if;
+        if has_integral_c then
+          predicted_v(roll)  := without_bias(angle_r(roll), bias_r(roll));
+          predicted_v(pitch) := without_bias(angle_r(pitch), bias_r(pitch));
         end if;
         state_r <= force_pitch;
 
@@ -174,7 +177,7 @@ begin
           root_start_r <= '1';
         end if;
         factor_r      <= resize(rate_v(roll), 32);
-        coefficient_r <= rate_gain_c;
+        coefficient_r <= rate_gain_roll_c;
         multiply_r    <= '1';
         state_r       <= rate_pitch;
 
@@ -186,21 +189,42 @@ begin
           root_start_r <= '1';
         end if;
         factor_r      <= resize(rate_v(pitch), 32);
-        coefficient_r <= rate_gain_c;
+        coefficient_r <= rate_gain_pitch_c;
         multiply_r    <= '1';
         state_r       <= predict_roll;
 
       elsif state_r = predict_roll then
-        predicted_v(roll) := angle_r(roll) + shift_rounded(product, rate_gain_fraction_bits_c);
+        predicted_v(roll) := before_turn(roll, angle_r(roll), predicted_v(roll))
+                             + shift_rounded(product, rate_gain_roll_fraction_bits_c);
         state_r           <= predict_pitch;
 
       elsif state_r = predict_pitch then
-        predicted_v(pitch) := angle_r(pitch) + shift_rounded(product, rate_gain_fraction_bits_c);
-        if uses_arcsin_c then
-          state_r <= wait_root;
+        predicted_v(pitch) := before_turn(pitch, angle_r(pitch), predicted_v(pitch))
+                              + shift_rounded(product, rate_gain_pitch_fraction_bits_c);
+        clocks_v           := (others => '0');
+        square_v           := (others => '0');
+        if uses_gate_c then
+          state_r <= squares;
         else
-          state_r <= wait_angle;
+          state_r <= first_wait;
         end if;
+
+      elsif state_r = squares then
+        -- A factor a clock; its square is there two clocks later.
+        if clocks_v < 3 then
+          factor_r      <= resize(force_v(0), 32);
+          coefficient_r <= resize(force_v(0), 18);
+          multiply_r    <= '1';
+          force_v       := (force_v(1), force_v(2), force_v(2));
+        end if;
+        if clocks_v >= 2 then
+          square_v := square_v + unsigned(product(31 downto 0));
+        end if;
+        if clocks_v = 4 then
+          corrects_v := square_v >= gate_lowest_c and square_v <= gate_highest_c;
+          state_r    <= first_wait;
+        end if;
+        clocks_v := clocks_v + 1;
 
       elsif state_r = wait_root then
         if root_done = '1' then
@@ -221,31 +245,49 @@ begin
             cordic_y_r     <= opposite_v;
             cordic_start_r <= '1';
           end if;
-          force_angle_v := force_angle;
-          factor_r      <= force_angle - predicted_v(axis_v);
+          tilt_v     := force_angle - tilt_offset_c(axis_v);
+          factor_r   <= tilt_v - predicted_v(axis_v);
+          if uses_gate_c and not corrects_v then
+            factor_r <= (others => '0');
+          end if;
           coefficient_r <= blend_c;
-          multiply_r    <= '1';
-          state_r       <= correct;
+          if has_integral_c then
+            coefficient_r <= integral_gain_c;
+          end if;
+          multiply_r <= '1';
+          state_r    <= correct;
         end if;
 
       elsif state_r = correct then
+        if has_integral_c then
+          coefficient_r <= blend_c;
+          multiply_r    <= '1';
+          state_r       <= learn;
+        else
+          state_r <= update;
+        end if;
+
+      elsif state_r = learn then
+        if restart_r = '0' and (axis_v = pitch or has_roll_c) then
+          bias_r(axis_v) <= bias_r(axis_v)
+                            - shift_rounded(product, integral_gain_fraction_bits_c);
+        end if;
         state_r <= update;
 
       elsif state_r = update then
         if axis_v = pitch or has_roll_c then
+          if has_integral_c then
+            bias_r(axis_v) <= limited(bias_r(axis_v));
+          end if;
           if restart_r = '1' then
-            angle_r(axis_v) <= force_angle_v;
+            angle_r(axis_v) <= tilt_v;
           else
             angle_r(axis_v) <= predicted_v(axis_v) + shift_rounded(product, blend_fraction_bits_c);
           end if;
         end if;
         if axis_v = roll and has_pitch_c then
-          axis_v := pitch;
-          if uses_arcsin_c then
-            state_r <= wait_root;
-          else
-            state_r <= wait_angle;
-          end if;
+          axis_v  := pitch;
+          state_r <= first_wait;
         else
           restarted_r <= restart_r;
           restart_r   <= '0';
@@ -260,6 +302,10 @@ begin
 
       if rst = '1' then
         angle_r        <= (others => (others => '0'));
+        if has_integral_c then
+          bias_r(roll)  <= gyro_bias_roll_c;
+          bias_r(pitch) <= gyro_bias_pitch_c;
+        end if;
         restart_r      <= '1';
         restarted_r    <= '0';
         multiply_r     <= '0';

@@ -26,6 +26,9 @@ HEADER_FOLDER = "mavlink"
 DIALECT = "hostkit"
 FRAME_OVERHEAD_BYTES = 12
 """Header and checksum of an unsigned MAVLink 2 frame."""
+HIDDEN_WORDS = 2
+"""Words that ``TILT_SAMPLE`` has for the state of a filter beside its angles."""
+HIDDEN_WORD_BYTES = 4
 
 
 def definition() -> str:
@@ -128,3 +131,11 @@ def payload_bytes(message: str) -> int:
     module = python_module()
     message_id = getattr(module, f"MAVLINK_MSG_ID_{message}")
     return int(module.mavlink_map[message_id].unpacker.size)
+
+
+def sample_bytes(hidden_words: int) -> int:
+    """Return the size of ``TILT_SAMPLE``'s payload when so many of its hidden words are used.
+
+    They are its last fields, and MAVLink 2 cuts trailing zeros.
+    """
+    return payload_bytes("TILT_SAMPLE") - HIDDEN_WORD_BYTES * (HIDDEN_WORDS - hidden_words)

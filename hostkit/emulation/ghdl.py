@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, EmulationError
 from hostkit.fixedpoint import wrap32
-from hostkit.records import read_only
+from hostkit.records import Axis, read_only
+from hostkit.spec import FixedPointSpec
 
 BENCH = "hk_complementary_tb"
 BUILD = "build"
@@ -30,7 +31,9 @@ POLL_S = 0.1
 
 _UNIT = re.compile(r"^(?:entity|package) (\w+)$", re.MULTILINE)
 _DIGEST = re.compile(r"[0-9a-f]{12}")
-_RESULT = re.compile(r"([0-9a-f]{8}) ([0-9a-f]{8}) ([01]) (\d+)")
+_RESULT = re.compile(r"((?:[0-9a-f]{8} ){4})([01]) (\d+)")
+
+COLUMN: dict[Axis, int] = {"roll": 0, "pitch": 1}
 
 IntArray = NDArray[np.int64]
 
@@ -45,6 +48,8 @@ class HdlRun:
         The design that is compiled into the core.
     angle_raw
         Roll and pitch in half turns, shape ``(N, 2)``; an axis that the design lacks is 0.
+    hidden_raw
+        The hidden word of each of them, shape ``(N, 2)``; 0 where the design has none.
     restarted
         True where the core loaded the measured tilt instead of stepping, shape ``(N,)``.
     latency_cycles
@@ -53,14 +58,20 @@ class HdlRun:
 
     design_digest: str
     angle_raw: IntArray
+    hidden_raw: IntArray
     restarted: NDArray[np.bool_]
     latency_cycles: IntArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        read_only(self.angle_raw)
-        read_only(self.restarted)
-        read_only(self.latency_cycles)
+        for array in (self.angle_raw, self.hidden_raw, self.restarted, self.latency_cycles):
+            read_only(array)
+
+    def state_raw(self, spec: FixedPointSpec) -> IntArray:
+        """Return the states as the integer model of a design has them, shape ``(N, S)``."""
+        columns = [COLUMN[axis] for axis in spec.axes]
+        words = (self.angle_raw[:, columns], self.hidden_raw[:, columns])
+        return np.hstack(words)[:, : len(spec.axes) + len(spec.hidden)]
 
 
 def analyse(folder: Path) -> tuple[str, ...]:
@@ -252,18 +263,19 @@ def _parsed(results: Path, samples: int) -> HdlRun:
         raise EmulationError(f"the simulation's results begin with {digest[:40]!r}, not a digest")
     if len(lines) != samples:
         raise EmulationError(f"the simulation wrote {len(lines)} results for {samples} samples")
-    rows = np.array([_parsed_line(line) for line in lines], dtype=np.int64).reshape(-1, 4)
+    rows = np.array([_parsed_line(line) for line in lines], dtype=np.int64).reshape(-1, 6)
     return HdlRun(
         design_digest=digest,
         angle_raw=wrap32(rows[:, :2]),
-        restarted=rows[:, 2] == 1,
-        latency_cycles=rows[:, 3].copy(),
+        hidden_raw=wrap32(rows[:, 2:4]),
+        restarted=rows[:, 4] == 1,
+        latency_cycles=rows[:, 5].copy(),
     )
 
 
-def _parsed_line(line: str) -> tuple[int, int, int, int]:
+def _parsed_line(line: str) -> tuple[int, ...]:
     match = _RESULT.fullmatch(line)
     if match is None:
         raise EmulationError(f"the simulation wrote {line[:40]!r}, which is not a result")
-    roll, pitch, restarted, latency = match.groups()
-    return int(roll, 16), int(pitch, 16), int(restarted), int(latency)
+    words, restarted, latency = match.groups()
+    return (*(int(word, 16) for word in words.split()), int(restarted), int(latency))

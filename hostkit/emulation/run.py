@@ -58,7 +58,7 @@ class EmulationResult:
     samples, missing
         Samples that came back, and samples of the recording that did not.
     mismatches
-        Samples whose raw counts or angles differ from the integer model's.
+        Samples whose raw counts or state differ from the integer model's.
     residual_rad
         Device minus float model, shape ``(samples, A)``.
     cycles_mean, cycles_max
@@ -96,11 +96,11 @@ class EmulationResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Answer:
-    """Rows of the recording that came back, with counts and angles."""
+    """Rows of the recording that came back, with counts and states."""
 
     row: IntArray
     counts: Counts
-    angle_raw: IntArray
+    state_raw: IntArray
     cycles_mean: float | None
     cycles_max: float | None
     stack_bytes: int | None = None
@@ -189,12 +189,11 @@ def _simulate(
     folder: Path, design: FilterDesign, counts: Counts, progress: Progress | None
 ) -> _Answer:
     run = ghdl.simulate(folder, counts.accel, counts.gyro, progress=progress)
-    columns = [("roll", "pitch").index(axis) for axis in AXES[design.axes]]
     _require_digest(run.design_digest, design)
     return _Answer(
         row=np.arange(len(counts)),
         counts=counts,
-        angle_raw=run.angle_raw[:, columns],
+        state_raw=run.state_raw(FILTERS[design.filter].lower(design)),
         cycles_mean=float(run.latency_cycles.mean()),
         cycles_max=float(run.latency_cycles.max()),
     )
@@ -213,7 +212,8 @@ def _run(
     for frame in frames:
         if frame.name == "TILT_SAMPLE":
             _require_digest(bytes(frame.message.digest).hex(), design)
-    trace = trace_of(frames, AXES[design.axes])
+    hidden_words = len(FILTERS[design.filter].lower(design).hidden)
+    trace = trace_of(frames, AXES[design.axes], hidden_words=hidden_words)
     if not len(trace):
         said = [str(f.message.text) for f in frames if f.name == "STATUSTEXT"]
         raise EmulationError(
@@ -223,7 +223,7 @@ def _run(
     return _Answer(
         row=trace.sequence,
         counts=Counts(accel=trace.accel_count, gyro=trace.gyro_count),
-        angle_raw=trace.angle_raw,
+        state_raw=trace.state_raw,
         cycles_mean=run.cycles_mean,
         cycles_max=run.cycles_max,
         stack_bytes=run.stack_bytes,
@@ -243,12 +243,13 @@ def _compare(
 ) -> EmulationResult:
     filter_, part = FILTERS[design.filter], SENSORS[design.sensor.part]
     wanted = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
-    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))
+    axes = len(AXES[design.axes])
+    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))[:, :axes]
     inside = (answer.row >= 0) & (answer.row < len(counts))
     row = np.where(inside, answer.row, 0)
     wrong = (
         ~inside
-        | (answer.angle_raw != wanted[row]).any(axis=1)
+        | (answer.state_raw != wanted[row]).any(axis=1)
         | (answer.counts.accel != counts.accel[row]).any(axis=1)
         | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
     )
@@ -257,7 +258,7 @@ def _compare(
         samples=len(answer.row),
         missing=len(counts) - len(np.unique(answer.row[inside])),
         mismatches=int(wrong.sum()),
-        residual_rad=wrap_rad(answer.angle_raw * RAD_PER_HALF_TURN_LSB - exact[row]),
+        residual_rad=wrap_rad(answer.state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact[row]),
         cycles_mean=answer.cycles_mean,
         cycles_max=answer.cycles_max,
         stack_bytes=answer.stack_bytes,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.fixedpoint import coefficient, shift_round, wrap32
-from hostkit.records import CordicTable
+from hostkit.spec import CordicTable
 
 STEPS = 20
 GUARD_BITS = 12

@@ -7,7 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.records import FilterDesign, FixedPointSpec
+from hostkit.records import FilterDesign
+from hostkit.spec import FixedPointSpec
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -21,14 +22,18 @@ class RunFloat(Protocol):
         design: FilterDesign,
         rate_rad_s: Vector,
         force_g: Vector,
-        start_rad: Vector | None = None,
+        start: Vector | None = None,
     ) -> Vector:
         """Run it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Filter:
-    """One filter: lowering, float model, integer model, and a single step of the latter."""
+    """One filter: lowering, float model, integer model, and a single step of the latter.
+
+    Models take and give states, one row a sample: first the angles of the design's axes, then the
+    hidden words that the spec names.
+    """
 
     name: str
     lower: Callable[[FilterDesign], FixedPointSpec]

@@ -81,17 +81,27 @@ class Decoder:
         )
 
 
-def trace_of(frames: list[Frame], axes: tuple[Axis, ...]) -> AngleTrace:
-    """Return the ``TILT_SAMPLE`` messages among `frames` as a trace of the design's axes."""
+def trace_of(frames: list[Frame], axes: tuple[Axis, ...], *, hidden_words: int = 0) -> AngleTrace:
+    """Return the ``TILT_SAMPLE`` messages among `frames` as a trace.
+
+    Parameters
+    ----------
+    axes
+        Axes of the design.
+    hidden_words
+        Words of its filter's state beside the angles.
+    """
     samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
     restarted_flag = python_module().HOSTKIT_SAMPLE_RESTARTED
-    angles = [[getattr(m, COLUMN[axis]) for axis in axes] for m in samples]
+    states = [
+        [*(getattr(m, COLUMN[axis]) for axis in axes), *m.hidden[:hidden_words]] for m in samples
+    ]
     return AngleTrace(
         sequence=np.array([m.sequence for m in samples], dtype=np.int64),
         time_us=np.array([m.time_usec for m in samples], dtype=np.uint64).astype(np.int64),
         accel_count=np.array([m.accel for m in samples], dtype=np.int64).reshape(-1, 3),
         gyro_count=np.array([m.gyro for m in samples], dtype=np.int64).reshape(-1, 3),
-        angle_raw=np.array(angles, dtype=np.int64).reshape(-1, len(axes)),
+        state_raw=np.array(states, dtype=np.int64).reshape(-1, len(axes) + hidden_words),
         restarted=np.array([bool(m.flags & restarted_flag) for m in samples], dtype=np.bool_),
     )
 

@@ -146,7 +146,8 @@ class Session:
             if digest_of(frame) != wanted:
                 self._other_digest = digest_of(frame)
                 return True
-        self.validator.add(trace_of(samples, AXES[self.design.axes]))
+        hidden_words = len(self.validator.spec.hidden)
+        self.validator.add(trace_of(samples, AXES[self.design.axes], hidden_words=hidden_words))
         return bool(samples)
 
     def _is_ours(self, frame: Frame) -> bool:

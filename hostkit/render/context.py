@@ -7,12 +7,13 @@ from hostkit.design_file import digest
 from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.cordic import ROOT_FRACTION_BITS
-from hostkit.fixedpoint import Coefficient
 from hostkit.mounting import Mounting
-from hostkit.records import FilterDesign, FixedPointSpec
+from hostkit.records import FilterDesign
+from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.part import Range, Register, RegisterWrite
+from hostkit.spec import FixedPointSpec
 from hostkit.targets import Target
 
 
@@ -77,7 +78,7 @@ class RenderContext:
 
     design: DesignContext
     spec: FixedPointSpec
-    coefficients: tuple[Coefficient, ...]
+    filter: FilterContext
     cordic_rom: tuple[int, ...]
     root_fraction_bits: int
     mounting: tuple[MountingContext, ...]
@@ -108,7 +109,7 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
     return RenderContext(
         design=_design_context(design),
         spec=spec,
-        coefficients=(spec.rate_gain, spec.blend),
+        filter=filter_context(spec),
         cordic_rom=_padded(spec.cordic.angles_raw),
         root_fraction_bits=ROOT_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
@@ -116,7 +117,7 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target),
+        link=link_plan(design.rate_hz, target, hidden_words=len(spec.hidden)),
         target=target,
     )
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes
+from hostkit.dialect import FRAME_OVERHEAD_BYTES, HIDDEN_WORDS, payload_bytes, sample_bytes
 from hostkit.errors import RenderError
 from hostkit.targets import Target
 
@@ -33,21 +33,31 @@ class LinkPlan:
     bytes_per_s: int
 
 
-def link_plan(rate_hz: float, target: Target) -> LinkPlan:
+def link_plan(rate_hz: float, target: Target, *, hidden_words: int = 0) -> LinkPlan:
     """Plan the telemetry of a design: every sample, and ATTITUDE at 50 Hz or less.
+
+    Parameters
+    ----------
+    hidden_words
+        Words of the filter's state beside its angles; every sample carries them.
 
     Raises
     ------
     RenderError
-        If the messages do not fit 80 % of the link.
+        If the messages do not fit 80 % of the link, or a sample cannot carry the state.
     """
+    if hidden_words > HIDDEN_WORDS:
+        raise RenderError(
+            f"the filter has {hidden_words} words of state beside its angles; "
+            f"TILT_SAMPLE carries {HIDDEN_WORDS}"
+        )
     attitude_every = max(1, math.ceil(rate_hz / ATTITUDE_MAX_HZ))
-    rates_hz = {
-        "TILT_SAMPLE": rate_hz,
-        "ATTITUDE": rate_hz / attitude_every,
-        "HEARTBEAT": 1000.0 / HEARTBEAT_MS,
-    }
-    needed = sum(hz * (payload_bytes(name) + FRAME_OVERHEAD_BYTES) for name, hz in rates_hz.items())
+    messages = (
+        (sample_bytes(hidden_words), rate_hz),
+        (payload_bytes("ATTITUDE"), rate_hz / attitude_every),
+        (payload_bytes("HEARTBEAT"), 1000.0 / HEARTBEAT_MS),
+    )
+    needed = sum(hz * (payload + FRAME_OVERHEAD_BYTES) for payload, hz in messages)
     usable = USABLE_SHARE * target.baud / BITS_PER_BYTE
     if target.baud and needed > usable:
         fits_hz = rate_hz * usable / needed

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from designs import design
+from designs import all_parameters, design
+from vectors import against_the_limit, near_1_g
 
+from hostkit.filters.complementary import lower
 from hostkit.records import FilterDesign
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -13,6 +15,7 @@ GENERATED = ROOT / "generated"
 TARGET_NAMES = ("host", "atmega328p", "spartan3adsp")
 VECTORS = "vectors.txt"
 HEADER = "accel x y z, gyro x y z: s16 counts; roll, pitch: s32 half turns; restarted"
+BIAS_HEADER = "; bias: s32 half turns per sample with {} fraction bits"
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,19 @@ class Sample:
     @property
     def folder(self) -> Path:
         return GENERATED / self.name
+
+    @property
+    def header(self) -> str:
+        integral = lower(self.design).integral
+        return HEADER + (BIAS_HEADER.format(integral.fraction_bits) if integral else "")
+
+    @property
+    def counts(self) -> np.ndarray:
+        """The stimulus, and for a filter with more than eta what tries the rest of it."""
+        if len(self.design.parameters) == 1:
+            return stimulus()
+        more = [near_1_g(self.design), against_the_limit(self.design, (400, 500))]
+        return np.concatenate([stimulus(), *more])
 
     def __str__(self) -> str:
         return self.name
@@ -41,6 +57,7 @@ SAMPLES = (
             low_pass_setting=5,
         ),
     ),
+    Sample("all-parameters", all_parameters()),
 )
 
 

@@ -1,4 +1,4 @@
-/* Scales numbers from standard input: "c" or "a", value, raw, frac. */
+/* Scales numbers from standard input: "c" (count), "a" (angle) or "s" (shift), value, raw, frac. */
 #include <stdio.h>
 
 #include "hk_fixed.h"
@@ -11,9 +11,15 @@ int main(void)
     unsigned frac;
 
     while (scanf(" %c %ld %ld %u", &kind, &value, &raw, &frac) == 4) {
-        const int32_t scaled = kind == 'c' ? hk_scale_count((int32_t)value, (int32_t)raw, frac)
-                                           : hk_scale_angle((int32_t)value, (int32_t)raw, frac);
+        int32_t scaled;
 
+        if (kind == 'c') {
+            scaled = hk_scale_count((int32_t)value, (int32_t)raw, frac);
+        } else if (kind == 'a') {
+            scaled = hk_scale_angle((int32_t)value, (int32_t)raw, frac);
+        } else {
+            scaled = hk_shift_rounded((int32_t)value, frac);
+        }
         printf("%ld\n", (long)scaled);
     }
     return 0;

@@ -1,13 +1,17 @@
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from samples import HEADER, SAMPLES, TARGET_NAMES, VECTORS, Sample, stimulus
+from boards import changed
+from c_filter import c_response
+from samples import SAMPLES, TARGET_NAMES, VECTORS, Sample
 
 from hostkit.design_file import design_text
 from hostkit.emulation.ghdl import analyse, simulate
 from hostkit.errors import ToolMissingError
 from hostkit.filters import FILTERS
+from hostkit.filters.complementary import lower
 from hostkit.records import AXES
 from hostkit.render import render_target
 from hostkit.targets import TARGETS
@@ -16,20 +20,20 @@ COLUMN = {"roll": 0, "pitch": 1}
 
 
 def python_response(sample: Sample, counts: np.ndarray) -> np.ndarray:
-    """Roll, pitch and restarted of the integer model, as the device lays them out."""
-    filter_ = FILTERS[sample.design.filter]
-    angle = filter_.run_integer(filter_.lower(sample.design), counts[:, :3], counts[:, 3:])
+    """Roll, pitch, restarted and hidden words of the integer model, as the device lays them out."""
+    filter_, axes = FILTERS[sample.design.filter], AXES[sample.design.axes]
+    state = filter_.run_integer(filter_.lower(sample.design), counts[:, :3], counts[:, 3:])
     out = np.zeros((len(counts), 3), dtype=np.int64)
-    for i, axis in enumerate(AXES[sample.design.axes]):
-        out[:, COLUMN[axis]] = angle[:, i]
+    for i, axis in enumerate(axes):
+        out[:, COLUMN[axis]] = state[:, i]
     out[0, 2] = 1
-    return out
+    return np.hstack([out, state[:, len(axes) :]])
 
 
 def expected_files(sample: Sample) -> dict[str, str]:
     files = {"design.json": design_text(sample.design)}
-    rows = np.hstack([stimulus(), python_response(sample, stimulus())])
-    files[VECTORS] = HEADER + "\n" + "".join(" ".join(map(str, row)) + "\n" for row in rows)
+    rows = np.hstack([sample.counts, python_response(sample, sample.counts)])
+    files[VECTORS] = sample.header + "\n" + "".join(" ".join(map(str, row)) + "\n" for row in rows)
     for name in TARGET_NAMES:
         for file in render_target(sample.design, TARGETS[name]):
             files[f"{name}/{file.path}"] = file.content
@@ -77,18 +81,12 @@ def test_python_gives_the_committed_vectors(sample: Sample) -> None:
     np.testing.assert_array_equal(python_response(sample, counts), response)
 
 
-def c_response(host_cc, code: Path, counts: np.ndarray, output: Path) -> np.ndarray:
-    """What the C filter in a folder answers, built strictly and with sanitizers."""
-    harness = Path(__file__).with_name("vector_main.c")
-    sources = (harness, code / "hk_filter.c", code / "hk_cordic.c")
-    program = host_cc.build(output, f"-I{code}", *sources)
-    return np.array(host_cc.run(program, counts), dtype=np.int64)
-
-
 def test_committed_c_gives_the_committed_vectors(sample: Sample, host_cc, tmp_path: Path) -> None:
     counts, response = committed_vectors(sample)
     got = c_response(host_cc, sample.folder / "host", counts, tmp_path / "vectors")
-    np.testing.assert_array_equal(got, response)
+    words = response.shape[1]
+    np.testing.assert_array_equal(got[:, :words], response)
+    assert not got[:, words:].any()
 
 
 def test_committed_vhdl_gives_the_committed_vectors(sample: Sample, tmp_path: Path) -> None:
@@ -102,21 +100,62 @@ def test_committed_vhdl_gives_the_committed_vectors(sample: Sample, tmp_path: Pa
         run = simulate(code, counts[:, :3], counts[:, 3:])
     except ToolMissingError as error:
         pytest.skip(str(error))
-    got = np.hstack([run.angle_raw, run.restarted[:, None].astype(np.int64)])
-    np.testing.assert_array_equal(got, response)
+    got = np.hstack([run.angle_raw, run.restarted[:, None].astype(np.int64), run.hidden_raw])
+    words = response.shape[1]
+    np.testing.assert_array_equal(got[:, :words], response)
+    assert not got[:, words:].any()
 
 
 def test_c_harness_can_fail(host_cc, tmp_path: Path) -> None:
     """One bit of one coefficient turned over must show."""
     sample = SAMPLES[0]
     counts, response = committed_vectors(sample)
-    code = tmp_path / "host"
-    code.mkdir()
-    for path in (sample.folder / "host").glob("hk_*"):
-        text = path.read_text()
-        if path.name == "hk_filter.h":
-            raw = FILTERS["complementary"].lower(sample.design).blend.raw
-            assert f"INT32_C({raw})" in text
-            text = text.replace(f"INT32_C({raw})", f"INT32_C({raw ^ 1})")
-        (code / path.name).write_text(text)
-    assert (c_response(host_cc, code, counts, tmp_path / "vectors") != response).any()
+    raw = FILTERS["complementary"].lower(sample.design).blend.raw
+    code = changed_header(sample, tmp_path / "host", f"INT32_C({raw})", f"INT32_C({raw ^ 1})")
+    got = c_response(host_cc, code, counts, tmp_path / "vectors")
+    assert (got[:, : response.shape[1]] != response).any()
+
+
+def changed_header(sample: Sample, code: Path, old: str, new: str) -> Path:
+    """Copy the host's code of a sample with one change of its filter's header."""
+    shutil.copytree(sample.folder / "host", code)
+    changed(code / "hk_filter.h", old, new)
+    return code
+
+
+def test_the_vectors_reach_the_limit_and_both_bounds_of_the_gate() -> None:
+    spec = lower(SAMPLES[-1].design)
+    counts, response = committed_vectors(SAMPLES[-1])
+    limit = spec.integral.limit_raw
+    assert {limit, -limit} <= set(response[:, 3:].ravel().tolist())
+    assert np.abs(response[:, 3:]).max() == limit
+    low, high = spec.gate.lowest, spec.gate.highest
+    squares = (counts[:, :3] ** 2).sum(axis=1).tolist()
+    assert {low, high, high + 1} <= set(squares)  # no three squares add up to low - 1
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "RATE_GAIN_ROLL_RAW",
+        "RATE_GAIN_PITCH_RAW",
+        "INTEGRAL_GAIN_RAW",
+        "TILT_OFFSET_ROLL",
+        "TILT_OFFSET_PITCH",
+        "GATE_LOWEST",
+        "GATE_HIGHEST",
+        "BIAS_LIMIT",
+        "BIAS_START_ROLL",
+        "BIAS_START_PITCH",
+    ],
+)
+def test_every_constant_counts_to_its_last_bit(host_cc, tmp_path: Path, name: str) -> None:
+    """One more in any constant of the C changes an answer to the committed vectors."""
+    sample = SAMPLES[-1]
+    counts, response = committed_vectors(sample)
+    header = (sample.folder / "host" / "hk_filter.h").read_text()
+    old = next(line for line in header.splitlines() if line.startswith(f"#define HK_{name} "))
+    raw = int(old.split("_C(")[1].split(")")[0])
+    code = changed_header(sample, tmp_path / "host", old, old.replace(str(raw), str(raw + 1), 1))
+    got = c_response(host_cc, code, counts, tmp_path / "vectors")
+    assert (got != response).any()

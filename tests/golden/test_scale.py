@@ -36,8 +36,19 @@ def test_angles_are_scaled_exactly_at_the_extremes_and_between(host_cc, program:
     values = [-(2**31), -(2**31) + 1, 2**31 - 1, 2**31 - 2, *edges]
     values += rng.integers(-(2**31), 2**31, 60).tolist()
     raws = [*RAWS, *rng.integers(2**16, 2**17, 10).tolist()]
-    cases = [("a", *case) for case in itertools.product(values, raws, range(17, 38))]
+    cases = [("a", *case) for case in itertools.product(values, raws, range(17, 50))]
     assert host_cc.run(program, cases) == expected(cases)
+
+
+def test_a_bias_is_rounded_exactly_up_to_the_ends_of_its_range(host_cc, program: Path) -> None:
+    rng = np.random.default_rng(4)
+    cases = []
+    for bits in range(1, 31):
+        largest = 2**31 - 1 - 2 ** (bits - 1)
+        values = [-(2**31), -largest, -1, 0, 1, largest, *rng.integers(-largest, largest, 20)]
+        cases += [("s", int(value), 0, bits) for value in values]
+    wanted = [[str(shift_round(value, bits))] for _, value, _, bits in cases]
+    assert host_cc.run(program, cases) == wanted
 
 
 def test_weight_of_nearly_one_is_scaled_exactly(host_cc, program: Path) -> None:

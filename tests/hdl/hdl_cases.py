@@ -5,8 +5,9 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from designs import design
+from designs import all_parameters, design, more_parameters
 from numpy.typing import NDArray
+from vectors import against_the_limit, near_1_g
 
 from hostkit.emulation import ghdl
 from hostkit.filters.complementary import lower, run_integer
@@ -23,7 +24,6 @@ RATES_HZ = (250.0, 20.0, 1000.0, 100.0, 500.0)
 GYRO_RANGES_DEG_S = (250, 500, 1000, 2000)
 ACCEL_RANGES_G = (2, 4, 8, 16, 2)
 CORNERS = (-32768, 0, 32767, 1, -1)
-CORE_COLUMN = {"roll": 0, "pitch": 1}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,11 +34,13 @@ class Core:
     folder: Path
 
     def expected(self, accel_count: IntArray, gyro_count: IntArray) -> IntArray:
-        """Return roll and pitch of the integer model, 0 for an axis the design lacks."""
-        angles = np.zeros((len(accel_count), 2), dtype=np.int64)
-        columns = [CORE_COLUMN[axis] for axis in AXES[self.design.axes]]
-        angles[:, columns] = run_integer(lower(self.design), accel_count, gyro_count)
-        return angles
+        """Return roll, pitch and their biases of the integer model, 0 for what the design lacks."""
+        states = np.zeros((len(accel_count), 4), dtype=np.int64)
+        columns = [ghdl.COLUMN[axis] for axis in AXES[self.design.axes]]
+        columns += [2 + column for column in columns]
+        found = run_integer(lower(self.design), accel_count, gyro_count)
+        states[:, columns[: found.shape[1]]] = found
+        return states
 
 
 def varied_designs() -> tuple[FilterDesign, ...]:
@@ -57,11 +59,35 @@ def varied_designs() -> tuple[FilterDesign, ...]:
     )
 
 
+def option_designs() -> tuple[FilterDesign, ...]:
+    """Return designs with the parameters beside eta: alone, together, and at their limits."""
+    widest = {"bias_deg_s": (20.0, -20.0), "scale": (0.25, -0.25), "offset_deg": (30.0, -30.0)}
+    return (
+        all_parameters(),
+        all_parameters(tilt="arcsin", mounting="-y-x-z", rate_hz=250.0),
+        all_parameters("roll", tilt="arcsin", accel_full_scale_g=8),
+        all_parameters("pitch", mounting="+z+x+y", rate_hz=20.0, eta=0.98),
+        design(rate_hz=500.0, more=more_parameters(**widest)),
+        design(tilt="arcsin", more=more_parameters(**widest, integral_gain=10.0)),
+        design(axes="roll", accel_full_scale_g=16, more=more_parameters(gate_g=1.0)),
+        design(axes="pitch", tilt="arcsin", more=more_parameters(gate_g=0.001)),
+        design(axes="pitch", rate_hz=20.0, eta=0.98, more=more_parameters(integral_gain=10.0)),
+        design(rate_hz=500.0, eta=0.5, more=more_parameters(gate_g=0.2, integral_gain=1e-6)),
+    )
+
+
 def design_name(varied: FilterDesign) -> str:
     return (
         f"{varied.tilt}{varied.mounting}-{varied.axes}-eta{varied.parameter('eta')}"
         f"-{varied.rate_hz:g}Hz-{varied.sensor.gyro_full_scale_deg_s}deg_s"
+        + "".join(f"-{name}" for name in _names(varied))
     )
+
+
+def _names(varied: FilterDesign) -> list[str]:
+    """Return the short names of the parameters beside eta."""
+    kinds = {p.name.removesuffix("_rad_s").removesuffix("_rad") for p in varied.parameters}
+    return sorted({name.rsplit("_roll")[0].rsplit("_pitch")[0] for name in kinds} - {"eta"})
 
 
 def build_core(built: FilterDesign, folder: Path) -> Core:
@@ -70,15 +96,23 @@ def build_core(built: FilterDesign, folder: Path) -> Core:
     return Core(design=built, folder=folder)
 
 
-def build_broken_core(folder: Path, *, source: str, good: str, bad: str) -> Core:
-    """Build the core of the default design with every `good` in one source turned into `bad`."""
-    write(render_target(design(), TARGETS["spartan3adsp"]), folder)
+def answer(run: ghdl.HdlRun) -> IntArray:
+    """Return what the core answered, laid out as :meth:`Core.expected` is."""
+    return np.hstack([run.angle_raw, run.hidden_raw])
+
+
+def build_broken_core(
+    folder: Path, *, source: str, good: str, bad: str, built: FilterDesign | None = None
+) -> Core:
+    """Build the core of a design with every `good` in one source turned into `bad`."""
+    built = built or design()
+    write(render_target(built, TARGETS["spartan3adsp"]), folder)
     path = folder / source
     text = path.read_text(encoding="ascii")
     assert good in text
     path.write_text(text.replace(good, bad), encoding="ascii")
     ghdl.analyse(folder)
-    return Core(design=design(), folder=folder)
+    return Core(design=built, folder=folder)
 
 
 def count_vectors() -> tuple[IntArray, IntArray]:
@@ -95,6 +129,13 @@ def count_vectors() -> tuple[IntArray, IntArray]:
         strict=True,
     )
     return np.concatenate(accel), np.concatenate(gyro)
+
+
+def option_vectors(varied: FilterDesign) -> tuple[IntArray, IntArray]:
+    """Return those after a sample at rest, forces about the gate, a rate like a large bias."""
+    limit = against_the_limit(varied, (60, 90))
+    counts = np.vstack([limit[:1], np.hstack(count_vectors()), near_1_g(varied), limit])
+    return counts[:, :3], counts[:, 3:]
 
 
 def _two_turns_about(axis: int) -> tuple[IntArray, IntArray]:

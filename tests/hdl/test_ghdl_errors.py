@@ -13,7 +13,11 @@ from hostkit.targets import TARGETS
 
 ACCEL = np.array([[0, 0, 16384], [100, -200, 16000]], dtype=np.int64)
 GYRO = np.zeros_like(ACCEL)
-RESULTS = "0123456789ab\n00000000 ffffffff 1 48\n7fffffff 80000000 0 48\n"
+RESULTS = (
+    "0123456789ab\n"
+    "00000000 ffffffff 00000007 fffffff9 1 48\n"
+    "7fffffff 80000000 00000000 00000000 0 48\n"
+)
 
 
 @pytest.fixture
@@ -87,6 +91,7 @@ def test_results_are_read(folder: Path, fake_ghdl: Path) -> None:
     run = ghdl.simulate(folder, ACCEL, GYRO, progress=seen.append)
     assert run.design_digest == "0123456789ab"
     assert run.angle_raw.tolist() == [[0, -1], [2**31 - 1, -(2**31)]]
+    assert run.hidden_raw.tolist() == [[7, -7], [0, 0]]
     assert run.restarted.tolist() == [True, False]
     assert run.latency_cycles.tolist() == [48, 48]
     assert seen
@@ -99,9 +104,10 @@ def test_results_are_read(folder: Path, fake_ghdl: Path) -> None:
         ("", "no results"),
         ("0123456789AB\n", "not a digest"),
         (RESULTS.rsplit("\n", 2)[0] + "\n", "1 results for 2 samples"),
-        (RESULTS + "00000000 00000000 0 48\n", "3 results for 2 samples"),
+        (RESULTS + "00000000 00000000 00000000 00000000 0 48\n", "3 results for 2 samples"),
         (RESULTS.replace("ffffffff", "XXXXXXXX"), "is not a result"),
-        (RESULTS.replace("ffffffff 1", "ffffffff 2"), "is not a result"),
+        (RESULTS.replace("00000007 ", ""), "is not a result"),
+        (RESULTS.replace("fffffff9 1", "fffffff9 2"), "is not a result"),
     ],
 )
 def test_odd_results_are_refused(

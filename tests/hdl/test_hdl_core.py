@@ -3,18 +3,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from designs import design
+from designs import all_parameters, design
 from hdl_cases import (
     Core,
+    answer,
     build_broken_core,
     count_vectors,
     design_name,
+    option_designs,
+    option_vectors,
     varied_designs,
 )
 
 from hostkit.design_file import digest
 from hostkit.emulation import ghdl
 from hostkit.errors import EmulationError
+from hostkit.filters.complementary import lower, run_integer
+from hostkit.records import FilterDesign
 
 ACCEL, GYRO = count_vectors()
 LATENCY_CYCLES = {
@@ -25,9 +30,23 @@ LATENCY_CYCLES = {
     ("arcsin", "pitch"): 54,
     ("arcsin", "both"): 78,
 }
+
+
+def latency_cycles(design: FilterDesign) -> int:
+    """An integral costs a clock; with the arc sine, whose axes do not overlap, one an axis."""
+    base = LATENCY_CYCLES[design.tilt, design.axes]
+    if lower(design).integral is None:
+        return base
+    return base + (2 if (design.tilt, design.axes) == ("arcsin", "both") else 1)
+
+
 each_design = pytest.mark.parametrize("core", varied_designs(), ids=design_name, indirect=True)
+each_option = pytest.mark.parametrize("core", option_designs(), ids=design_name, indirect=True)
 both_methods = pytest.mark.parametrize(
-    "core", [design(), design(tilt="arcsin")], ids=design_name, indirect=True
+    "core",
+    [design(), design(tilt="arcsin"), all_parameters()],
+    ids=design_name,
+    indirect=True,
 )
 
 
@@ -39,7 +58,7 @@ def test_the_designs_cover_every_axis_choice_and_method() -> None:
 @each_design
 def test_the_core_equals_the_integer_model(core: Core) -> None:
     run = ghdl.simulate(core.folder, ACCEL, GYRO)
-    np.testing.assert_array_equal(run.angle_raw, core.expected(ACCEL, GYRO))
+    np.testing.assert_array_equal(answer(run), core.expected(ACCEL, GYRO))
     assert run.restarted.tolist() == [True] + [False] * (len(ACCEL) - 1)
     assert set(run.latency_cycles) == {LATENCY_CYCLES[core.design.tilt, core.design.axes]}
     assert run.design_digest == digest(core.design)
@@ -48,24 +67,53 @@ def test_the_core_equals_the_integer_model(core: Core) -> None:
 @each_design
 def test_the_core_equals_the_integer_model_with_random_stalls(core: Core) -> None:
     run = ghdl.simulate(core.folder, ACCEL, GYRO, random_stalls=True)
-    np.testing.assert_array_equal(run.angle_raw, core.expected(ACCEL, GYRO))
+    np.testing.assert_array_equal(answer(run), core.expected(ACCEL, GYRO))
     assert set(run.latency_cycles) == {LATENCY_CYCLES[core.design.tilt, core.design.axes]}
+
+
+@each_option
+@pytest.mark.parametrize("random_stalls", [False, True])
+def test_every_parameter_equals_the_integer_model(core: Core, random_stalls: bool) -> None:
+    accel, gyro = option_vectors(core.design)
+    run = ghdl.simulate(core.folder, accel, gyro, random_stalls=random_stalls)
+    np.testing.assert_array_equal(answer(run), core.expected(accel, gyro))
+    assert set(run.latency_cycles) == {latency_cycles(core.design)}
+
+
+def test_the_option_designs_reach_the_limit_of_the_bias_and_both_sides_of_the_gate() -> None:
+    for option in option_designs():
+        spec, accel = lower(option), option_vectors(option)[0]
+        if spec.gate is not None:
+            squares = (accel**2).sum(axis=1)
+            assert (squares == spec.gate.lowest).any() or (squares == spec.gate.highest).any()
+            assert ((squares < spec.gate.lowest) | (squares > spec.gate.highest)).any()
+    hits = [option for option in option_designs() if _meets_the_limit(option)]
+    assert {option.tilt for option in hits} == {"atan2", "arcsin"}
+
+
+def _meets_the_limit(option: FilterDesign) -> bool:
+    spec = lower(option)
+    if spec.integral is None:
+        return False
+    state = run_integer(spec, *option_vectors(option))
+    return bool((np.abs(state[:, len(spec.axes) :]) == spec.integral.limit_raw).any())
 
 
 @both_methods
 def test_a_reset_in_any_state_starts_over(core: Core) -> None:
     accel, gyro = ACCEL[200:203], GYRO[200:203]
     expected = core.expected(accel, gyro)
-    for clocks in range(1, LATENCY_CYCLES[core.design.tilt, "both"] + 4):
+    for clocks in range(1, latency_cycles(core.design) + 4):
         run = ghdl.simulate(core.folder, accel, gyro, abandon_clocks=clocks)
-        np.testing.assert_array_equal(run.angle_raw, expected, err_msg=f"{clocks} clocks")
+        np.testing.assert_array_equal(answer(run), expected, err_msg=f"{clocks} clocks")
         assert run.restarted.tolist() == [True, False, False]
 
 
 @both_methods
 def test_the_core_converts_for_synthesis(core: Core) -> None:
-    names = ("hk_common_pkg", "hk_design_pkg", "hk_multiplier", "hk_root", "hk_cordic")
-    sources = [f"{name}.vhd" for name in (*names, "hk_complementary")]
+    packages = ("hk_common_pkg", "hk_design_pkg", "hk_complementary_pkg")
+    units = ("hk_multiplier", "hk_root", "hk_cordic", "hk_complementary")
+    sources = [f"{name}.vhd" for name in (*packages, *units)]
     build = core.folder / "synthesis"
     build.mkdir()
     command = ["ghdl", "--synth", "--std=93", f"--workdir={build}", "--out=verilog", *sources]
@@ -78,7 +126,9 @@ def test_the_core_converts_for_synthesis(core: Core) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "latch" not in done.stderr
-    # What GHDL 2.0 writes wrongly: a case loses its default, a signed shift its sign.
+    # What GHDL 2.0 writes wrongly: a case loses its default, a signed shift its sign, and a
+    # constant of more than 32 bits becomes a text.
+    assert '"' not in done.stdout
     assert "case" not in done.stdout
     assert ">>" not in done.stdout
     assert done.stdout.count("// smul") <= 1
@@ -98,7 +148,30 @@ def test_the_core_converts_for_synthesis(core: Core) -> None:
 def test_one_wrong_bit_is_found(tmp_path: Path, source: str, good: str, bad: str) -> None:
     core = build_broken_core(tmp_path, source=source, good=good, bad=bad)
     run = ghdl.simulate(core.folder, ACCEL, GYRO)
-    assert np.any(run.angle_raw != core.expected(ACCEL, GYRO))
+    assert np.any(answer(run) != core.expected(ACCEL, GYRO))
+
+
+@pytest.mark.usefixtures("ghdl_installed")
+@pytest.mark.parametrize(
+    ("source", "good", "bad"),
+    [
+        ("hk_design_pkg.vhd", "gate_lowest_c  : unsigned(31 downto 0) := to_unsigned(2174", "1"),
+        ("hk_complementary.vhd", "square_v <= gate_highest_c", "square_v < gate_highest_c"),
+        ("hk_complementary.vhd", "restart_r = '0' and", "true and"),
+        ("hk_complementary_pkg.vhd", "return bias_limit_c", "return bias"),
+        ("hk_complementary_pkg.vhd", "return -bias_limit_c", "return bias"),
+        ("hk_complementary.vhd", "- tilt_offset_c(axis_v)", "+ tilt_offset_c(axis_v)"),
+        ("hk_complementary.vhd", "<= gyro_bias_pitch_c", "<= tilt_offset_pitch_c"),
+        ("hk_complementary.vhd", "clocks_v >= 2", "clocks_v >= 3"),
+    ],
+)
+def test_a_fault_in_the_options_is_found(tmp_path: Path, source: str, good: str, bad: str) -> None:
+    bad = good.replace("2174", "2175") if bad == "1" else bad
+    built = all_parameters()
+    core = build_broken_core(tmp_path, source=source, good=good, bad=bad, built=built)
+    accel, gyro = option_vectors(built)
+    run = ghdl.simulate(core.folder, accel, gyro)
+    assert np.any(answer(run) != core.expected(accel, gyro))
 
 
 @pytest.mark.usefixtures("ghdl_installed")

@@ -1,10 +1,13 @@
 import random
 
+import numpy as np
 import pytest
-from designs import design
+from designs import all_parameters, design
 from device import Device
 
+from hostkit.dialect import sample_bytes
 from hostkit.link.decoder import Decoder, digest_of, trace_of
+from hostkit.records import AXES
 
 DEVICE = Device(design())
 FRAMES = DEVICE.frames(300)
@@ -29,6 +32,25 @@ def test_trace_holds_what_was_sent() -> None:
     assert trace.sequence.tolist() == list(range(len(samples)))
     assert trace.restarted.tolist() == [True] + [False] * (len(samples) - 1)
     assert {digest_of(f) for f in samples} == {DEVICE.digest}
+
+
+@pytest.mark.parametrize(("axes", "words"), [("roll", 1), ("pitch", 1), ("both", 2)])
+def test_trace_holds_the_hidden_state(axes: str, words: int) -> None:
+    device = Device(all_parameters(axes))
+    frames = Decoder().feed(b"".join(device.frames(100)))
+    trace = trace_of(frames, AXES[axes], hidden_words=words)
+    sent = device.states(100)
+    angles = sent[:, [{"roll": 0, "pitch": 1}[axis] for axis in AXES[axes]]]
+    np.testing.assert_array_equal(trace.state_raw, np.hstack([angles, sent[:, 2 : 2 + words]]))
+
+
+def test_a_device_without_hidden_state_sends_no_byte_of_it() -> None:
+    """MAVLink 2 cuts trailing zeros: the second byte of a frame is the size of its payload."""
+    sizes = [
+        max(frame[1] for frame in Device(d).frames(300)[1:])
+        for d in (design(), all_parameters("roll"), all_parameters())
+    ]
+    assert sizes == [sample_bytes(words) for words in (0, 1, 2)] == [43, 47, 51]
 
 
 @pytest.mark.parametrize("dropped", [[5], [5, 6, 7], [10, 20, 30, 40], list(range(50, 150))])

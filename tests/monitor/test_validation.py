@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from designs import design
+from designs import all_parameters, design
 from device import Device
 
 from hostkit.errors import HostkitError
@@ -17,7 +17,9 @@ def judge(frames: list[bytes], d=None, *, batch: int = 37) -> Validator:
     d = d or design()
     validator, decoder = Validator(d), Decoder()
     for i in range(0, len(frames), batch):
-        validator.add(trace_of(decoder.feed(b"".join(frames[i : i + batch])), AXES[d.axes]))
+        got = decoder.feed(b"".join(frames[i : i + batch]))
+        hidden_words = len(validator.spec.hidden)
+        validator.add(trace_of(got, AXES[d.axes], hidden_words=hidden_words))
     return validator
 
 
@@ -39,11 +41,50 @@ def test_right_device_passes(axes: str, batch: int) -> None:
 def test_one_wrong_bit_in_one_angle_is_two_mismatches_and_fails() -> None:
     """The step into the wrong angle is wrong, and so is the step out of it."""
     device = Device(design())
-    angles = device.angles(SAMPLES)
-    angles[200, 1] ^= 1
-    report = judge(device.frames(SAMPLES, angles=angles)).report(Thresholds())
+    states = device.states(SAMPLES)
+    states[200, 1] ^= 1
+    report = judge(device.frames(SAMPLES, states=states)).report(Thresholds())
     assert (report.verdict, report.mismatches) == ("fail", 2)
     assert "2 of 400 steps" in report.reasons[0]
+
+
+@pytest.mark.parametrize("axes", ["roll", "pitch", "both"])
+@pytest.mark.parametrize("batch", [1, 37])
+def test_right_device_with_every_parameter_passes(axes: str, batch: int) -> None:
+    d = all_parameters(axes)
+    states = Device(d).states(SAMPLES)
+    assert len(np.unique(states[:, 2])) > SAMPLES // 4
+    report = judge(Device(d).frames(SAMPLES), d, batch=batch).report(Thresholds())
+    assert (report.verdict, report.checked, report.mismatches) == ("pass", SAMPLES, 0)
+    assert 0.0 < report.max_rad < math.radians(0.005)
+
+
+@pytest.mark.parametrize("word", [2, 3])
+def test_one_wrong_bit_in_the_hidden_state_is_two_mismatches_and_fails(word: int) -> None:
+    """Bit 20 changes the angle of the next step too, the last bit only the word itself."""
+    device = Device(all_parameters())
+    for bit in (0, 20):
+        states = device.states(SAMPLES)
+        states[200, word] ^= 1 << bit
+        frames = device.frames(SAMPLES, states=states)
+        report = judge(frames, device.design).report(Thresholds())
+        assert (report.verdict, report.mismatches) == ("fail", 2)
+
+
+def test_a_device_that_hides_its_state_fails() -> None:
+    device = Device(all_parameters())
+    states = device.states(SAMPLES)
+    states[:, 2:] = 0
+    report = judge(device.frames(SAMPLES, states=states), device.design).report(Thresholds())
+    assert (report.verdict, report.mismatches) == ("fail", SAMPLES)
+
+
+def test_the_float_model_takes_up_the_hidden_state_after_a_loss() -> None:
+    d = all_parameters()
+    frames = Device(d).frames(SAMPLES)
+    report = judge(frames[:150] + frames[151:], d).report(Thresholds())
+    assert (report.verdict, report.lost, report.mismatches) == ("pass", 1, 0)
+    assert report.max_rad < math.radians(0.001)
 
 
 @pytest.mark.parametrize("lost", [[7], [100, 101, 102, 250]])

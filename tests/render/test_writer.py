@@ -2,10 +2,13 @@ import json
 from pathlib import Path
 
 import pytest
-from designs import design
+from designs import all_parameters, design
 
+from hostkit.dialect import HIDDEN_WORDS, python_module
 from hostkit.errors import HostkitError, RenderError
 from hostkit.render import generate, read_manifest, stale_files, target_of, write
+from hostkit.render.context import render_context
+from hostkit.render.link_plan import link_plan
 from hostkit.targets import TARGETS
 
 
@@ -87,6 +90,27 @@ def test_unwritable_folder_is_one_clear_error(tmp_path: Path) -> None:
 def test_rate_that_the_sensor_cannot_make_is_refused_with_the_nearest() -> None:
     with pytest.raises(HostkitError, match=r"nearest is 90\.9091 Hz"):
         generate(design(rate_hz=95.0), TARGETS["host"])
+
+
+def test_the_link_budget_counts_the_hidden_state_only_where_there_is_one() -> None:
+    target = TARGETS["atmega328p"]
+    plans = [render_context(d, target).link for d in (design(), all_parameters("roll"))]
+    plans.append(render_context(all_parameters(), target).link)
+    assert [plan.bytes_per_s - plans[0].bytes_per_s for plan in plans] == [0, 400, 800]
+    # 100 samples of 43 + 12 bytes, 50 attitudes of 28 + 12, one heartbeat of 9 + 12.
+    assert plans[0].bytes_per_s == 100 * 55 + 50 * 40 + 21
+
+
+def test_more_hidden_state_than_a_message_carries_is_refused() -> None:
+    with pytest.raises(RenderError, match=r"has 3 words of state .* carries 2"):
+        link_plan(100.0, TARGETS["host"], hidden_words=3)
+
+
+def test_the_dialect_has_the_hidden_words_that_the_link_plan_counts_on() -> None:
+    message = python_module().MAVLink_tilt_sample_message
+    field = message.ordered_fieldnames.index("hidden")
+    assert field == len(message.ordered_fieldnames) - 1
+    assert message.array_lengths[field] == HIDDEN_WORDS
 
 
 def test_link_that_is_too_slow_is_refused_with_the_budget() -> None:

@@ -10,8 +10,8 @@
 #define HK_PITCH 1
 #define HK_ANGLES 2
 
-#define HK_RATE_GAIN_RAW  INT32_C(72818)  /* 36408.88888888889 half turns / 2^31 per count, s16.1 */
-#define HK_RATE_GAIN_FRAC 1
+#define HK_RATE_GAIN_PITCH_RAW  INT32_C(72818)  /* 36408.88888888889 half turns / 2^31 per count, s16.1 */
+#define HK_RATE_GAIN_PITCH_FRAC 1
 #define HK_BLEND_RAW  INT32_C(77070)  /* 0.5880000000000001 1, s0.17 */
 #define HK_BLEND_FRAC 17
 
@@ -19,6 +19,10 @@ typedef struct {
     int32_t angle[HK_ANGLES]; /* roll, pitch; an axis that the design does not have stays 0 */
     uint8_t primed;           /* 0 until the first sample has loaded the measured tilt */
 } hk_filter_t;
+
+/* The state beside the angles of the design's axes, to initialise an array of words with. */
+#define HK_FILTER_HIDDEN(filter) \
+    { 0 }
 
 void hk_filter_init(hk_filter_t *filter);
 

@@ -9,11 +9,10 @@
 #define HK_BODY_Y(count) ((int32_t)(count)[1])
 #define HK_BODY_Z(count) ((int32_t)(count)[2])
 
-/* What hk_scale_count and hk_scale_angle ask for. */
-typedef char hk_formats_fit[(HK_RATE_GAIN_FRAC >= 1 && HK_RATE_GAIN_FRAC <= 15
-                             && HK_BLEND_FRAC >= 16)
-                                ? 1
-                                : -1];
+/* What the functions of hk_fixed.h ask for. */
+#define HK_FITS(frac, lowest, highest) ((frac) >= (lowest) && (frac) <= (highest) ? 1 : -1)
+typedef char hk_rate_gain_pitch_fits[HK_FITS(HK_RATE_GAIN_PITCH_FRAC, 1, 15)];
+typedef char hk_blend_fits[HK_FITS(HK_BLEND_FRAC, 16, 49)];
 
 void hk_filter_init(hk_filter_t *filter)
 {
@@ -28,11 +27,18 @@ static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
     tilt[HK_PITCH] = hk_arcsin(-HK_BODY_X(accel_count), INT32_C(16384));
 }
 
-/* Predict with the rate, correct with the wrapped difference to the measured tilt. */
-static int32_t hk_blend(int32_t angle, int32_t rate_count, int32_t tilt)
+/* Predict pitch with the rate. */
+static int32_t hk_predict_pitch(const hk_filter_t *filter, const int16_t gyro_count[3])
 {
-    const int32_t step = hk_scale_count(rate_count, HK_RATE_GAIN_RAW, HK_RATE_GAIN_FRAC);
-    const int32_t predicted = hk_wrap_add(angle, step);
+    const int32_t turn = hk_scale_count(HK_BODY_Y(gyro_count), HK_RATE_GAIN_PITCH_RAW,
+                                        HK_RATE_GAIN_PITCH_FRAC);
+
+    return hk_wrap_add(filter->angle[HK_PITCH], turn);
+}
+
+/* Correct a prediction with the wrapped difference to the measured tilt. */
+static int32_t hk_correct(int32_t predicted, int32_t tilt)
+{
     const int32_t innovation = hk_wrap_sub(tilt, predicted);
     const int32_t correction = hk_scale_angle(innovation, HK_BLEND_RAW, HK_BLEND_FRAC);
 
@@ -48,7 +54,7 @@ bool hk_filter_update(hk_filter_t *filter, const int16_t accel_count[3],
     hk_measure(accel_count, tilt);
     filter->angle[HK_PITCH] =
         load ? tilt[HK_PITCH]
-             : hk_blend(filter->angle[HK_PITCH], HK_BODY_Y(gyro_count), tilt[HK_PITCH]);
+             : hk_correct(hk_predict_pitch(filter, gyro_count), tilt[HK_PITCH]);
     filter->primed = 1U;
     return load;
 }

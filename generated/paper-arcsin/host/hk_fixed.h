@@ -21,7 +21,7 @@ static inline int32_t hk_scale_count(int32_t count, int32_t raw, unsigned frac)
     return count * (INT32_C(1) << (16U - frac)) + ((low + half) >> frac);
 }
 
-/* angle * raw / 2^frac, halves upwards; any angle, frac >= 16. */
+/* angle * raw / 2^frac, halves upwards; any angle, 17 <= frac <= 49, or frac = 16 with raw = 2^16. */
 static inline int32_t hk_scale_angle(int32_t angle, int32_t raw, unsigned frac)
 {
     const uint16_t coefficient = (uint16_t)(raw - HK_COEFFICIENT_MSB);
@@ -37,6 +37,18 @@ static inline int32_t hk_scale_angle(int32_t angle, int32_t raw, unsigned frac)
         return half + ((angle ^ rest) & 1);
     }
     return ((half >> (frac - 18U)) + 1) >> 1;
+}
+
+/* value / 2^bits, halves upwards; value + 2^(bits - 1) fits 32 bits, 1 <= bits <= 30. */
+static inline int32_t hk_shift_rounded(int32_t value, unsigned bits)
+{
+    return (value + (INT32_C(1) << (bits - 1U))) >> bits;
+}
+
+/* The nearest number in -limit .. limit. */
+static inline int32_t hk_clamped(int32_t value, int32_t limit)
+{
+    return value > limit ? limit : (value < -limit ? -limit : value);
 }
 
 /* Sum and difference modulo 2^32: the wrap of an angle at +-pi, without signed overflow. */

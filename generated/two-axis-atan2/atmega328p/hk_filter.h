@@ -10,8 +10,10 @@
 #define HK_PITCH 1
 #define HK_ANGLES 2
 
-#define HK_RATE_GAIN_RAW  INT32_C(116508)  /* 1820.4444444444448 half turns / 2^31 per count, s11.6 */
-#define HK_RATE_GAIN_FRAC 6
+#define HK_RATE_GAIN_ROLL_RAW  INT32_C(116508)  /* 1820.4444444444448 half turns / 2^31 per count, s11.6 */
+#define HK_RATE_GAIN_ROLL_FRAC 6
+#define HK_RATE_GAIN_PITCH_RAW  INT32_C(116508)  /* 1820.4444444444448 half turns / 2^31 per count, s11.6 */
+#define HK_RATE_GAIN_PITCH_FRAC 6
 #define HK_BLEND_RAW  INT32_C(117441)  /* 0.0034999999999999476 1, s-8.25 */
 #define HK_BLEND_FRAC 25
 
@@ -19,6 +21,10 @@ typedef struct {
     int32_t angle[HK_ANGLES]; /* roll, pitch; an axis that the design does not have stays 0 */
     uint8_t primed;           /* 0 until the first sample has loaded the measured tilt */
 } hk_filter_t;
+
+/* The state beside the angles of the design's axes, to initialise an array of words with. */
+#define HK_FILTER_HIDDEN(filter) \
+    { 0 }
 
 void hk_filter_init(hk_filter_t *filter);
 

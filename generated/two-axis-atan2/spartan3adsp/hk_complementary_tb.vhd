@@ -1,8 +1,8 @@
 -- Bench of hk_complementary: plays a vector file and writes what comes out.
 --
 -- VECTOR_FILE: one sample a line, six 16-bit hex words: accel x y z, gyro x y z.
--- RESULT_FILE: first line the design digest; then one sample a line: roll and pitch as 32-bit hex
--- words, restarted as 0 or 1, and the latency in clocks.
+-- RESULT_FILE: first line the design digest; then one sample a line: roll, pitch and the biases of
+-- both as 32-bit hex words, restarted as 0 or 1, and the latency in clocks.
 --
 -- The bench ends by itself: without an error when every sample has come out, with a failure when
 -- the core breaks the handshake, changes a waiting result, or gives nothing for WATCHDOG_CLOCKS.
@@ -32,6 +32,7 @@ architecture sim of hk_complementary_tb is
   subtype noise_t is unsigned(15 downto 0);
   subtype count_t is signed(15 downto 0);
   type sample_t is array (0 to 5) of count_t;
+  type state_t is array (0 to 3) of signed(31 downto 0);
 
   signal clk      : std_logic := '0';
   signal rst      : std_logic := '1';
@@ -45,8 +46,7 @@ architecture sim of hk_complementary_tb is
   signal sample        : sample_t;
   signal out_valid     : std_logic;
   signal out_ready     : std_logic := '0';
-  signal angle_roll    : signed(31 downto 0);
-  signal angle_pitch   : signed(31 downto 0);
+  signal state         : state_t;
   signal restarted     : std_logic;
   signal design_digest : std_logic_vector(47 downto 0);
 
@@ -114,8 +114,10 @@ begin
       gyro_z        => sample(5),
       out_valid     => out_valid,
       out_ready     => out_ready,
-      angle_roll    => angle_roll,
-      angle_pitch   => angle_pitch,
+      angle_roll    => state(0),
+      angle_pitch   => state(1),
+      bias_roll     => state(2),
+      bias_pitch    => state(3),
       restarted     => restarted,
       design_digest => design_digest
     );
@@ -189,8 +191,7 @@ begin
     variable line_v    : line;
     variable noise_v   : noise_t := x"1D0F";
     variable waiting_v : boolean := false;
-    variable roll_v    : signed(31 downto 0);
-    variable pitch_v   : signed(31 downto 0);
+    variable state_v   : state_t;
     variable clock_v   : natural := 0;
     variable taken_v   : natural := 0;  -- clock at which the core took the sample
     variable last_v    : natural := 0;  -- clock at which something happened
@@ -212,20 +213,20 @@ begin
       if out_valid = '1' then
         if not waiting_v then
           latency_v := clock_v - taken_v;
-          roll_v    := angle_roll;
-          pitch_v   := angle_pitch;
+          state_v   := state;
           waiting_v := true;
         end if;
-        assert angle_roll = roll_v and angle_pitch = pitch_v
+        assert state = state_v
           report "the core changes a result that waits" severity failure;
         if out_ready = '1' then
-          write_hex(line_v, std_logic_vector(angle_roll));
-          write(line_v, ' ');
-          write_hex(line_v, std_logic_vector(angle_pitch));
+          for i in state_t'range loop
+            write_hex(line_v, std_logic_vector(state(i)));
+            write(line_v, ' ');
+          end loop;
           if restarted = '1' then
-            write(line_v, string'(" 1 "));
+            write(line_v, string'("1 "));
           else
-            write(line_v, string'(" 0 "));
+            write(line_v, string'("0 "));
           end if;
           write(line_v, latency_v);
           writeline(results, line_v);

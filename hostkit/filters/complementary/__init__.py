@@ -1,16 +1,11 @@
 """The complementary filter of one or two tilt axes."""
 
-from hostkit.filters.complementary.model import (
-    LEAST_FORCE_G,
-    RATE_AXIS,
-    lower,
-    measured_tilt_rad,
-    measured_tilt_raw,
-    run_float,
-    run_integer,
-    step_integer,
-)
+from hostkit.filters.complementary.float_model import run_float
+from hostkit.filters.complementary.gate import force_gate
+from hostkit.filters.complementary.integer_model import run_integer, step_integer
+from hostkit.filters.complementary.lowering import LEAST_FORCE_G, lower
 from hostkit.filters.complementary.parameters import (
+    BIAS_LIMIT_RAD_S,
     BY_NAME,
     KINDS,
     ParameterKind,
@@ -22,8 +17,10 @@ from hostkit.filters.complementary.parameters import (
     settings,
     tau_from_eta,
 )
+from hostkit.filters.complementary.tilt import RATE_AXIS, measured_tilt_rad, measured_tilt_raw
 
 __all__ = [
+    "BIAS_LIMIT_RAD_S",
     "BY_NAME",
     "KINDS",
     "LEAST_FORCE_G",
@@ -32,6 +29,7 @@ __all__ = [
     "Settings",
     "crossover_hz",
     "eta_from_tau",
+    "force_gate",
     "lower",
     "measured_tilt_rad",
     "measured_tilt_raw",

@@ -187,8 +187,8 @@ def parameter(name: ParameterName, value: float, axis: Axis | None = None) -> Pa
 
 
 def parameters(eta: float, *others: Parameter) -> tuple[Parameter, ...]:
-    """Return the parameters of a design of this filter, eta first."""
-    return (parameter("eta", eta), *others)
+    """Return the parameters of a design of this filter, sorted by name as in a design file."""
+    return tuple(sorted((parameter("eta", eta), *others), key=lambda p: p.name))
 
 
 def _keys(kind: ParameterKind, axes: tuple[Axis, ...]) -> tuple[str, ...]:

@@ -1,0 +1,113 @@
+/* A virtual MPU-6050, register by register, for emulated boards and tests.
+ *
+ * Plain C99 without a C library: it is linked into a program, loaded as a shared object or compiled
+ * to WebAssembly. It owns no clock and no memory; the caller passes the time, in nanoseconds that
+ * never run backwards, and a table of physical samples, which it quantises with the range that the
+ * registers select. */
+#ifndef HK_VIRTUAL_MPU6050_H
+#define HK_VIRTUAL_MPU6050_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hk_mpu6050_regs.h"
+
+/* One row of the table: angular rate x, y, z (rad/s), specific force x, y, z (m/s^2), temperature
+ * (degC), in sensor axes. */
+#define HK_ROW_VALUES 7
+
+#define HK_VIRTUAL_REGISTERS 128
+#define HK_NEVER UINT64_MAX
+
+/* Which samples the sensor plays.
+ *
+ * Until data-ready is enabled the sensor shows the row that comes next. From the first sample after
+ * the enabling on, that row comes settle times more, and then the rows follow, one per sample. At
+ * the end of the table the sensor stops producing samples, or starts again with row 0. A driver
+ * that drops exactly settle samples therefore sees every row once, however often it restarts. */
+typedef struct {
+    const double *rows;
+    uint32_t row_count;
+    uint32_t settle;
+    bool loop;
+    uint32_t next_row;
+    uint32_t rows_played;
+    uint32_t lead_in_left;
+    bool running;
+} hk_replay_t;
+
+/* The I2C side: who is addressed, and where the register pointer stands. */
+typedef struct {
+    bool open;
+    bool pointer_expected;
+    uint8_t pointer;
+} hk_slave_t;
+
+/* Faults on demand, and what went wrong on its own. */
+typedef struct {
+    uint32_t nack_left;      /* so many addressings are not acknowledged */
+    uint32_t sda_stuck_left; /* SDA stays low until so many clocks have come */
+    uint8_t who_am_i;        /* the identity the sensor answers with */
+    uint32_t unread_samples; /* samples that were replaced before anybody read them */
+} hk_faults_t;
+
+typedef struct {
+    uint8_t reg[HK_VIRTUAL_REGISTERS];
+    uint8_t pending[HK_MPU6050_BURST_BYTES]; /* waits for the end of a transaction */
+    bool pending_full;
+    bool pending_ready; /* it was sampled with data-ready enabled */
+    bool latch; /* the INT pin, before its polarity */
+    uint64_t now_ns;
+    uint64_t sample_ns;      /* next output sample */
+    uint64_t published_ns;   /* when the sample in the registers arrived there */
+    uint64_t reset_start_ns; /* of a device reset under way */
+    uint64_t reset_end_ns;
+    uint64_t pll_locked_ns;
+    uint64_t pulse_end_ns;
+    hk_slave_t slave;
+    hk_replay_t replay;
+    hk_faults_t faults;
+} hk_virtual_mpu6050_t;
+
+/* Size of the struct, for callers that are not C. */
+uint32_t hk_virtual_mpu6050_size(void);
+
+/* Power up at time 0, asleep, with a table of row_count rows of HK_ROW_VALUES. */
+void hk_virtual_mpu6050_init(hk_virtual_mpu6050_t *sensor, const double *rows, uint32_t row_count,
+                             uint32_t settle, bool loop);
+
+/* Faults on demand; 0 and the true identity are what init sets. */
+void hk_virtual_mpu6050_set_identity(hk_virtual_mpu6050_t *sensor, uint8_t who_am_i);
+void hk_virtual_mpu6050_nack_next(hk_virtual_mpu6050_t *sensor, uint32_t addressings);
+void hk_virtual_mpu6050_hold_sda(hk_virtual_mpu6050_t *sensor, uint32_t clocks);
+
+/* Let time pass. Every other call acts at the time of the last advance. */
+void hk_virtual_mpu6050_advance(hk_virtual_mpu6050_t *sensor, uint64_t now_ns);
+
+/* The I2C bus. start also is the repeated start; it returns the acknowledge. */
+bool hk_virtual_mpu6050_start(hk_virtual_mpu6050_t *sensor, uint8_t address, bool read);
+bool hk_virtual_mpu6050_write(hk_virtual_mpu6050_t *sensor, uint8_t byte);
+uint8_t hk_virtual_mpu6050_read(hk_virtual_mpu6050_t *sensor);
+void hk_virtual_mpu6050_stop(hk_virtual_mpu6050_t *sensor);
+
+/* One clock without a transaction, as a master gives it that frees the bus; and the state of SDA. */
+void hk_virtual_mpu6050_clock(hk_virtual_mpu6050_t *sensor);
+bool hk_virtual_mpu6050_sda_low(const hk_virtual_mpu6050_t *sensor);
+
+/* Level of the INT pin. */
+bool hk_virtual_mpu6050_int_pin(const hk_virtual_mpu6050_t *sensor);
+
+/* Next time at which something changes by itself, or HK_NEVER. */
+uint64_t hk_virtual_mpu6050_next_event_ns(const hk_virtual_mpu6050_t *sensor);
+
+/* When the sample that the registers hold was published. */
+uint64_t hk_virtual_mpu6050_published_ns(const hk_virtual_mpu6050_t *sensor);
+
+/* True when the last row has been published and read, which a looping table never is. */
+bool hk_virtual_mpu6050_exhausted(const hk_virtual_mpu6050_t *sensor);
+
+/* Rows published so far, and samples that nobody read before the next came. */
+uint32_t hk_virtual_mpu6050_rows_played(const hk_virtual_mpu6050_t *sensor);
+uint32_t hk_virtual_mpu6050_unread_samples(const hk_virtual_mpu6050_t *sensor);
+
+#endif

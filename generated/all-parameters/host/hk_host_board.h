@@ -1,0 +1,36 @@
+/* The host "board": virtual time, the virtual sensor on its bus, the link on standard output. */
+#ifndef HK_HOST_BOARD_H
+#define HK_HOST_BOARD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct {
+    const double *rows;
+    uint32_t row_count;
+    uint32_t settle;
+    bool realtime; /* keep pace with the wall clock and loop the table */
+    int who_am_i;  /* identity to answer with, or -1 for the true one */
+    uint32_t nack;
+    uint32_t hold_sda;
+    uint32_t fault_row; /* nack and hold_sda begin when so many rows have been played */
+} hk_host_options_t;
+
+typedef struct {
+    uint32_t rows_played;
+    uint32_t unread_samples;
+    bool stalled; /* no row was taken for a long time, so the run was ended */
+    double time_s;
+} hk_host_statistics_t;
+
+void hk_host_board_init(const hk_host_options_t *options);
+
+/* True when the table has been played, nobody reads any more, or hk_host_board_stop was called. */
+bool hk_host_board_finished(void);
+
+/* End the run; may be called from a signal handler. */
+void hk_host_board_stop(void);
+
+hk_host_statistics_t hk_host_board_statistics(void);
+
+#endif

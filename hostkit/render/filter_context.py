@@ -1,0 +1,91 @@
+"""What templates see of the filter: its axes and its coefficients, with neutral ones to fill in."""
+
+from dataclasses import dataclass, replace
+
+from hostkit.fixedpoint import Coefficient, QFormat
+from hostkit.records import AXES, Axis
+from hostkit.spec import BiasIntegral, FixedPointSpec, ForceGate
+
+NO_GATE = ForceGate(lowest=0, highest=0)
+NO_INTEGRAL = BiasIntegral(
+    gain=Coefficient(
+        name="integral_gain", real=0.0, unit="1", format=QFormat(width=18, fraction_bits=17), raw=0
+    ),
+    fraction_bits=1,
+    limit_raw=0,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisContext:
+    """Roll or pitch. One that the design lacks has the rate gain of the other, and zeros.
+
+    Attributes
+    ----------
+    name, rate_axis
+        Name of the axis, and of the body axis whose rate raises it.
+    present
+        Whether the design has it.
+    rate_gain, tilt_offset_raw, gyro_bias_raw
+        As in the spec.
+    """
+
+    name: Axis
+    rate_axis: str
+    present: bool
+    rate_gain: Coefficient
+    tilt_offset_raw: int = 0
+    gyro_bias_raw: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterContext:
+    """The filter of a design; what it lacks is neutral, and the booleans say that it is unused.
+
+    Attributes
+    ----------
+    axes
+        Roll and pitch.
+    coefficients, all_coefficients
+        Those of the design, and with those of what it lacks.
+    """
+
+    axes: tuple[AxisContext, ...]
+    coefficients: tuple[Coefficient, ...]
+    all_coefficients: tuple[Coefficient, ...]
+    uses_gate: bool
+    gate: ForceGate
+    has_integral: bool
+    integral: BiasIntegral
+
+
+def filter_context(spec: FixedPointSpec) -> FilterContext:
+    """Lay out what templates need of the filter."""
+    axes = tuple(_axis(spec, name) for name in AXES["both"])
+    integral = spec.integral or NO_INTEGRAL
+    own = () if spec.integral is None else (integral.gain,)
+    return FilterContext(
+        axes=axes,
+        coefficients=(*spec.rate_gains, spec.blend, *own),
+        all_coefficients=(*(axis.rate_gain for axis in axes), spec.blend, integral.gain),
+        uses_gate=spec.gate is not None,
+        gate=spec.gate or NO_GATE,
+        has_integral=spec.integral is not None,
+        integral=integral,
+    )
+
+
+def _axis(spec: FixedPointSpec, name: Axis) -> AxisContext:
+    rate_axis = {"roll": "x", "pitch": "y"}[name]
+    if name not in spec.axes:
+        gain = replace(spec.rate_gains[0], name=f"rate_gain_{name}")
+        return AxisContext(name=name, rate_axis=rate_axis, present=False, rate_gain=gain)
+    i = spec.axes.index(name)
+    return AxisContext(
+        name=name,
+        rate_axis=rate_axis,
+        present=True,
+        rate_gain=spec.rate_gains[i],
+        tilt_offset_raw=spec.tilt_offset_raw[i],
+        gyro_bias_raw=spec.gyro_bias_raw[i],
+    )
