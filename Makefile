@@ -30,6 +30,8 @@ goldens: setup     ## rewrite generated/; read the diff before committing
 	git diff --stat generated
 
 bench: setup       ## speed and memory as ratios to a peer
+	$(BIN)/python -m pip install -q --disable-pip-version-check -e '.[bench]' || \
+		$(BIN)/python -m benchmarks.install
 	$(BIN)/python benchmarks/run.py
 
 clean:             ## remove what setup, tests and builds made

@@ -132,7 +132,7 @@ class Problem:
         for parts, error in self.errors(x, recording):
             mask = scored_of(parts, begin - at, None if end is None else end - at)
             deviation = _deviation(parts, error)[mask]
-            squares += float(np.vdot(deviation, deviation))
+            squares += float(np.square(deviation).sum())
             scored += len(deviation)
             at += len(parts[0])
         return math.sqrt(squares / scored) if scored else math.nan

@@ -4,15 +4,22 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hostkit.errors import HostkitError
-from hostkit.optimisers import OPTIMISERS, SwarmResult, qpso
+from hostkit.optimisers import OPTIMISERS, SwarmResult, grid_brent, qpso
 from hostkit.tuning.correlation import TabulatedProblem, tabulated
 from hostkit.tuning.kernel import ErrorStream, NativeKernel
+from hostkit.tuning.kernel.native import LineTask
 from hostkit.tuning.options import AUTO, TuningOptions
 from hostkit.tuning.problem import Problem
 
-ONE_PARAMETER, SEVERAL_PARAMETERS = "grid-brent", qpso.NAME
+Vector = NDArray[np.float64]
+
+ONE_PARAMETER, SEVERAL_PARAMETERS = grid_brent.NAME, qpso.NAME
+
+EDGE = 1e-6
+"""Share of the range within which a point is on its end."""
 
 
 def choose_optimiser(name: str, parameters: int) -> str:
@@ -49,9 +56,11 @@ def search(problem: Problem, options: TuningOptions, optimiser: str) -> SwarmRes
     tables = None if optimiser == ONE_PARAMETER else tabulated(problem, planned)
 
     def run(restart: int) -> SwarmResult:
-        seed = options.seed if restart == 0 else [options.seed, restart]
-        return _run(alone, tables, options, optimiser, np.random.default_rng(seed))
+        seed = (options.seed,) if restart == 0 else (options.seed, restart)
+        return _run(alone, tables, options, optimiser, seed)
 
+    if options.restarts == 1:
+        return run(0)
     with ThreadPoolExecutor(min(options.jobs, options.restarts)) as pool:
         results = list(pool.map(run, range(options.restarts)))
     best = min(results, key=lambda result: result.cost)
@@ -63,10 +72,10 @@ def _run(
     tables: TabulatedProblem | None,
     options: TuningOptions,
     optimiser: str,
-    rng: np.random.Generator,
+    seed: tuple[int, ...],
 ) -> SwarmResult:
-    if optimiser == qpso.NAME and problem.space.plain and tables is None:
-        compiled = _compiled_swarm(problem, options, rng)
+    if tables is None:
+        compiled = _compiled(problem, options, optimiser, seed)
         if compiled is not None:
             return compiled
     return OPTIMISERS[optimiser].minimise(
@@ -75,44 +84,63 @@ def _run(
         problem.space.upper,
         particles=options.particles,
         iterations=options.iterations,
-        rng=rng,
+        rng=_generator(seed),
     )
 
 
-def _compiled_swarm(
-    problem: Problem, options: TuningOptions, rng: np.random.Generator
+def _generator(seed: tuple[int, ...]) -> np.random.Generator:
+    """Return the generator of a seed; a single number gives the one that it names alone."""
+    return np.random.default_rng(seed[0] if len(seed) == 1 else seed)
+
+
+def _compiled(
+    problem: Problem, options: TuningOptions, optimiser: str, seed: tuple[int, ...]
 ) -> SwarmResult | None:
-    """Run the swarm over tau inside the compiled kernel, where there is one and all is float64."""
-    kernel = problem.kernel
-    streams = [
-        stream
-        for recording in problem.streams
-        for stream in recording
-        if isinstance(stream, ErrorStream) and stream.dtype == np.float64
-    ]
-    count = len(problem.streams) * len(problem.space.axes)
-    if not isinstance(kernel, NativeKernel) or len(streams) < count or problem.jobs > 1:
+    """Run the search over log tau inside the compiled kernel, where it can be."""
+    kernel, task = problem.kernel, _line_task(problem)
+    if not isinstance(kernel, NativeKernel) or task is None:
         return None
-    lower, upper = problem.space.lower, problem.space.upper
-    x, history = kernel.qpso_tau(
-        streams,
-        problem.objective,
-        problem.space.period_s,
-        (float(lower[0]), float(upper[0])),
-        options.particles,
-        options.iterations,
-        qpso.CONTRACTION,
-        rng,
-    )
+    if optimiser == qpso.NAME:
+        x, history = kernel.qpso_tau(
+            task, options.particles, options.iterations, qpso.CONTRACTION, _generator(seed)
+        )
+        evaluations = options.particles * (options.iterations + 1)
+    elif optimiser == grid_brent.NAME:
+        lower, upper = task.bounds
+        tolerance = grid_brent.TOLERANCE * (upper - lower)
+        x, history, evaluations = kernel.grid_brent_tau(
+            task, grid_brent.POINTS, tolerance, options.iterations
+        )
+    else:
+        return None
+    return _result(problem, x, history, evaluations)
+
+
+def _line_task(problem: Problem) -> LineTask | None:
+    """Return the search over log tau for the kernel; None if it is another one, or not float64."""
+    space = problem.space
+    if not space.plain or len(space.dimensions) > 1 or not space.dimensions[0].is_log:
+        return None
+    if problem.jobs > 1 or np.dtype(problem.dtype) != np.float64:
+        return None
+    streams = [stream for recording in problem.streams for stream in recording]
+    whole = tuple(s for s in streams if isinstance(s, ErrorStream) and s.dtype == np.float64)
+    if len(whole) < len(streams):
+        return None
+    bounds = (float(space.lower[0]), float(space.upper[0]))
+    return LineTask(whole, problem.objective, space.period_s, bounds)
+
+
+def _result(problem: Problem, x: float, history: Vector, evaluations: int) -> SwarmResult:
     if not np.isfinite(history[-1]):
-        raise HostkitError("the cost is not finite at any point that the swarm visited")
-    point = np.array([x])
-    edge = 1e-6 * (upper - lower)
+        raise HostkitError("the cost is not finite at any point that was visited")
+    lower, upper = problem.space.lower, problem.space.upper
+    point, edge = np.array([x]), EDGE * (upper - lower)
     return SwarmResult(
         x=point,
         cost=float(history[-1]),
         history=history,
-        evaluations=options.particles * (options.iterations + 1),
+        evaluations=evaluations,
         at_bound=(point - lower <= edge) | (upper - point <= edge),
-        stopped_at=options.iterations,
+        stopped_at=len(history) - 1,
     )

@@ -12,7 +12,7 @@ from recorded import EVERY, problem, recorded
 
 from hostkit.optimisers import OPTIMISERS
 from hostkit.records import Objective
-from hostkit.tuning import TuningOptions
+from hostkit.tuning import SearchRange, TuningOptions
 from hostkit.tuning.kernel import (
     NativeKernel,
     PortableKernel,
@@ -23,6 +23,7 @@ from hostkit.tuning.kernel import (
 )
 from hostkit.tuning.problem import Problem
 from hostkit.tuning.search import search
+from hostkit.tuning.space import search_space
 
 OBJECTIVES: list[Objective] = ["rmse", "mae"]
 
@@ -130,6 +131,30 @@ def test_swarm_in_c_is_the_swarm_in_python(native, objective):
     np.testing.assert_allclose(compiled.history[:20], python.history[:20], rtol=1e-9)
     assert compiled.cost == pytest.approx(python.cost, rel=1e-9)
     assert compiled.x == pytest.approx(python.x, abs=1e-4)
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(6))
+def test_grid_and_brent_in_c_are_those_in_python(native, objective, seed):
+    p = problem(recorded("random", seed=seed, duration_s=3.0), objective=objective, by=native)
+    compiled = search(p, TuningOptions(optimiser="grid-brent"), "grid-brent")
+    python = OPTIMISERS["grid-brent"].minimise(
+        p.cost, p.space.lower, p.space.upper, rng=np.random.default_rng(1)
+    )
+    assert compiled.evaluations == python.evaluations
+    assert compiled.stopped_at == python.stopped_at
+    np.testing.assert_allclose(compiled.history, python.history, rtol=1e-9)
+    assert compiled.x == pytest.approx(python.x, abs=1e-6)
+
+
+def test_swarm_over_tau_itself_is_no_swarm_over_its_logarithm(native):
+    """The loop in C searches log tau; a linear range must not be given to it."""
+    p = problem(recorded(), by=native)
+    linear = SearchRange(name="tau", lowest=0.02, highest=100.0, is_log=False)
+    space = search_space("roll", 0.01, ("tau",), ranges=(linear,))
+    found = search(replace(p, space=space), TuningOptions(optimiser="qpso"), "qpso")
+    wanted = search(p, TuningOptions(optimiser="grid-brent"), "grid-brent")
+    assert found.x[0] == pytest.approx(np.exp(wanted.x[0]), rel=1e-2)
 
 
 def test_threads_change_nothing():

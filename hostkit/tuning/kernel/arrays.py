@@ -1,7 +1,7 @@
 """What the kernel works on: streams, candidates, and the state that is carried over."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, Protocol
 
@@ -57,6 +57,8 @@ class ErrorStream:
     reference_step: Samples | None = None
     force_deviation: Samples | None = None
     reference: Samples | None = None
+    handle: list[Any] = field(default_factory=list, init=False, repr=False, compare=False)
+    """What the compiled kernel keeps of the stream between calls."""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

@@ -196,3 +196,130 @@ void hk_qpso_tau(const hk_stream_f64 *streams, long stream_count, const double *
         }
     }
 }
+
+/* What a search for one parameter asks, and what it keeps. */
+typedef struct {
+    const hk_stream_f64 *streams;
+    long stream_count;
+    const double *weights;
+    int squared;
+    double period;
+    double *work;
+    double *history; /* best cost after each step */
+    long steps;
+    long evaluations;
+    double best_x;
+    double best_cost;
+} hk_line_search;
+
+static void hk_ask(hk_line_search *search, long count, const double *x, double *cost)
+{
+    double least = search->steps > 0 ? search->history[search->steps - 1] : INFINITY;
+
+    hk_tau_costs(search->streams, search->stream_count, search->weights, search->squared,
+                 search->period, count, x, search->work, cost);
+    for (long i = 0; i < count; i++) {
+        if (!isfinite(cost[i])) {
+            cost[i] = INFINITY;
+        }
+        if (cost[i] < least) {
+            least = cost[i];
+            search->best_x = x[i];
+            search->best_cost = cost[i];
+        }
+    }
+    search->history[search->steps++] = least;
+    search->evaluations += count;
+}
+
+/* The search of optimisers/grid_brent.py on log tau: an even grid, then R. P. Brent's search
+ * ("Algorithms for minimization without derivatives", 1973, chapter 5) between the neighbours of
+ * its best point. `history` has room for limit + 1 steps; returns how many there were. */
+long hk_grid_brent_tau(const hk_stream_f64 *streams, long stream_count, const double *weights,
+                       int squared, double period, double lower, double upper, long points,
+                       double tolerance, long limit, double *work, double *history, double *best_x,
+                       long *evaluations)
+{
+    const double golden = 0.5 * (3.0 - sqrt(5.0));
+    const double precision = sqrt(2.2e-16);
+    double *const grid = work + 4 * points;
+    double *const cost = grid + points;
+    hk_line_search search = {
+        .streams = streams, .stream_count = stream_count, .weights = weights, .squared = squared,
+        .period = period, .work = work, .history = history, .best_cost = INFINITY};
+    long nearest = 0;
+    double a, b, x, fx, second, f_second, third, f_third;
+    double step = 0.0;
+    double before = 0.0; /* the step before the last one */
+
+    for (long i = 0; i < points; i++) {
+        grid[i] = lower + (upper - lower) * (double)i / (double)(points - 1);
+    }
+    hk_ask(&search, points, grid, cost);
+    for (long i = 1; i < points; i++) {
+        nearest = cost[i] < cost[nearest] ? i : nearest;
+    }
+    a = grid[HK_MAX(nearest - 1, 0)];
+    b = grid[HK_MIN(nearest + 1, points - 1)];
+    x = second = third = a + golden * (b - a);
+    hk_ask(&search, 1, &x, &fx);
+    f_second = f_third = fx;
+    while (search.steps < limit + 1) {
+        const double middle = 0.5 * (a + b);
+        const double least = precision * fabs(x) + tolerance / 3.0;
+        int parabola = 0;
+        double at, f_at;
+
+        if (fabs(x - middle) <= 2.0 * least - 0.5 * (b - a)) {
+            break;
+        }
+        if (fabs(before) > least) {
+            double r = (x - second) * (fx - f_third);
+            double q = (x - third) * (fx - f_second);
+            double p = (x - third) * q - (x - second) * r;
+            const double earlier = before;
+
+            q = 2.0 * (q - r);
+            p = q > 0.0 ? -p : p;
+            q = fabs(q);
+            before = step;
+            if (fabs(p) < fabs(0.5 * q * earlier) && p > q * (a - x) && p < q * (b - x)) {
+                parabola = 1;
+                step = p / q;
+                at = x + step;
+                if (at - a < 2.0 * least || b - at < 2.0 * least) {
+                    step = middle >= x ? least : -least;
+                }
+            }
+        }
+        if (!parabola) {
+            before = x >= middle ? a - x : b - x;
+            step = golden * before;
+        }
+        at = x + (step >= 0.0 ? 1.0 : -1.0) * HK_MAX(fabs(step), least);
+        hk_ask(&search, 1, &at, &f_at);
+        if (f_at <= fx) {
+            *(at >= x ? &a : &b) = x;
+            third = second;
+            f_third = f_second;
+            second = x;
+            f_second = fx;
+            x = at;
+            fx = f_at;
+        } else {
+            *(at < x ? &a : &b) = at;
+            if (f_at <= f_second || second == x) {
+                third = second;
+                f_third = f_second;
+                second = at;
+                f_second = f_at;
+            } else if (f_at <= f_third || third == x || third == second) {
+                third = at;
+                f_third = f_at;
+            }
+        }
+    }
+    *best_x = search.best_x;
+    *evaluations = search.evaluations;
+    return search.steps;
+}

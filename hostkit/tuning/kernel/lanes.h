@@ -29,14 +29,19 @@ static inline NAME(vector) NAME(clamped)(NAME(vector) value, REAL limit)
            - NAME(masked)(limit + 0 * value, below);
 }
 
-/* e <- eta e + (eta c + v) over some samples; sums |e| or e^2 of each lane unless sum is null. */
+/* e <- eta e + (eta c + v) over some samples; sums |e| or e^2 of each lane unless sum is null. With
+ * squares there are three multiply-adds a step, and adding first takes one off their ports. */
 static inline __attribute__((always_inline)) void NAME(plain_run)(
     const int vectors, const int squared, const VALUE *c, const VALUE *v, long samples,
     const NAME(vector) *eta, NAME(vector) *e, NAME(vector) *sum)
 {
     for (long k = 0; k < samples; k++) {
         for (int i = 0; i < vectors; i++) {
-            e[i] = eta[i] * e[i] + (eta[i] * (REAL)c[k] + (REAL)v[k]);
+            if (squared) {
+                e[i] = eta[i] * (e[i] + (REAL)c[k]) + (REAL)v[k];
+            } else {
+                e[i] = eta[i] * e[i] + (eta[i] * (REAL)c[k] + (REAL)v[k]);
+            }
             if (sum) {
                 sum[i] += squared ? e[i] * e[i] : NAME(magnitude)(e[i]);
             }

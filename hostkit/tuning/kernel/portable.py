@@ -84,7 +84,7 @@ def _add_plain(
     for i in range(len(candidates)):
         lane = Carry(error=carry.error[i : i + 1], bias=carry.bias[i : i + 1], sums=carry.sums)
         error = trace_plain(stream, candidates.one(i), lane)[scored]
-        sums[i] += np.vdot(error, error) if objective == "rmse" else np.abs(error).sum()
+        sums[i] += np.square(error).sum() if objective == "rmse" else np.abs(error).sum()
 
 
 def _add_full(
