@@ -172,7 +172,7 @@ def _simulate(path: Path, profile: str, seed: int) -> tuple[Recording, str]:
 
 def _tune(recording: Recording, path: Path, seed: int) -> tuple[TuningResult, str]:
     options = TuningOptions(
-        seed=seed, sensor=SENSOR, free=("tau", "gyro_bias"), optimiser=qpso.NAME
+        seed=seed, sensor=SENSOR, free=("tau", "tilt_offset"), optimiser=qpso.NAME
     )
     result = tune((recording,), options)
     save_design(result.design, path)
