@@ -121,7 +121,7 @@ def _line_task(problem: Problem) -> LineTask | None:
     space = problem.space
     if not space.plain or len(space.dimensions) > 1 or not space.dimensions[0].is_log:
         return None
-    if problem.jobs > 1 or np.dtype(problem.dtype) != np.float64:
+    if np.dtype(problem.dtype) != np.float64:
         return None
     streams = [stream for recording in problem.streams for stream in recording]
     whole = tuple(s for s in streams if isinstance(s, ErrorStream) and s.dtype == np.float64)
