@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
-NODE   := hostkit/emulation/avr8js
+NODE   := hostkit/emulation/avr8js hostkit/emulation/rp2040js
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test check goldens bench clean
@@ -11,7 +11,7 @@ help:              ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 setup:             ## make .venv, install hostkit and the toolchains; safe to repeat
-	@./.ci/setup "$(PYTHON)" "$(VENV)" "$(NODE)"
+	@./.ci/setup "$(PYTHON)" "$(VENV)" $(NODE)
 
 demo: setup        ## the whole loop without hardware, ending in a report
 	$(BIN)/hostkit demo --out demo
@@ -35,5 +35,5 @@ bench: setup       ## speed and memory as ratios to a peer
 	$(BIN)/python benchmarks/run.py
 
 clean:             ## remove what setup, tests and builds made
-	rm -rf $(VENV) $(NODE)/node_modules demo build dist .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) $(NODE:%=%/node_modules) demo build dist .pytest_cache .mypy_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -9,21 +9,29 @@ from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CordicTable:
-    """Constants of the CORDIC that replaces libm: the same in C, VHDL and Python.
+class ArctanTable:
+    """Constants of the arc tangent that replaces libm: the same in C, VHDL and Python.
 
-    `angles_raw` are ``round(atan(2**-i) / pi * 2**31)`` half-turn units; `guard_bits` is how far
-    counts are shifted left before the first step.
+    Attributes
+    ----------
+    guard_bits
+        How far counts are shifted left first.
+    turn_digits, ratio_digits
+        Binary digits of the division that choose a turn, and of the one that measures the rest.
+    angles_raw
+        ``round(atan(turn / 2**turn_digits) / pi * 2**31)`` half-turn units.
+    stretches_raw
+        What each turn adds to a length of one, 18 fraction bits.
+    slope
+        Half-turn units per unit of the ratio, which is 2**-22.
     """
 
     guard_bits: int
+    turn_digits: int
+    ratio_digits: int
     angles_raw: tuple[int, ...]
-    gain: Coefficient
-
-    @property
-    def steps(self) -> int:
-        """Number of micro-rotations."""
-        return len(self.angles_raw)
+    stretches_raw: tuple[int, ...]
+    slope: Coefficient
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,7 +115,7 @@ class FixedPointSpec:
     gyro_bias_raw: tuple[int, ...]
     gate: ForceGate | None
     integral: BiasIntegral | None
-    cordic: CordicTable
+    arctan: ArctanTable
     gravity_count: int
     hidden: tuple[StateWord, ...]
     error_bound_rad: float

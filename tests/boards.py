@@ -22,6 +22,7 @@ from hostkit.targets import TARGETS
 
 BOOT, ACTIVE, CRITICAL = 1, 4, 5
 RESTARTED, SATURATED = 1, 2
+PICO_TOOLS = ("make", "gcc", "arm-none-eabi-gcc", "node", "rp2040js", "clang", "wasm-ld")
 
 
 def require_or_skip(*tools: str) -> None:
@@ -140,4 +141,15 @@ def avr_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
     folder = generated("atmega328p", tmp_path_factory.mktemp("avr"))
     avr_board.build(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def pico_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Generated code of the RP2040 target, built."""
+    from hostkit.emulation import rp2040_board
+
+    require_or_skip(*PICO_TOOLS)
+    folder = generated("rp2040", tmp_path_factory.mktemp("pico"))
+    rp2040_board.build(folder)
     return folder

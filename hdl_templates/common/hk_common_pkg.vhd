@@ -5,8 +5,8 @@ use ieee.numeric_std.all;
 
 package hk_common_pkg is
 
-  -- Arc tangents of the CORDIC, padded with zeros so that no 5-bit step number leaves the table.
-  type hk_angle_table_t is array (0 to 31) of signed(31 downto 0);
+  -- A number for each turn of the arc tangent; no 6-bit turn leaves the table.
+  type hk_turn_table_t is array (0 to 63) of natural;
 
   -- One body axis: the sensor axis it is (0, 1, 2 are x, y, z) and whether it points the other way.
   type hk_body_axis_t is record
@@ -20,17 +20,14 @@ package hk_common_pkg is
     x, y, z : signed(15 downto 0)
   ) return signed;
 
+  -- Size of a count, up to 2**15.
+  function size_of (count : signed(16 downto 0)) return unsigned;
+
   -- Nearest count in -limit .. limit.
   function clamped (count : signed(16 downto 0); limit : natural) return signed;
 
   -- Divide by 2**bits, rounding halves upwards, and keep the low 32 bits.
   function shift_rounded (product : signed(49 downto 0); bits : positive) return signed;
-
-  -- Arithmetic shift by a variable distance, written out in powers of two.
-  function shifted_right (
-    value    : signed(31 downto 0);
-    distance : unsigned(4 downto 0)
-  ) return signed;
 
 end package hk_common_pkg;
 
@@ -55,6 +52,16 @@ package body hk_common_pkg is
     return count_v;
   end function body_count;
 
+  function size_of (count : signed(16 downto 0)) return unsigned is
+    variable size_v : signed(16 downto 0);
+  begin
+    size_v := count;
+    if count(16) = '1' then
+      size_v := -count;
+    end if;
+    return unsigned(size_v(15 downto 0));
+  end function size_of;
+
   function clamped (count : signed(16 downto 0); limit : natural) return signed is
   begin
     if count > limit then
@@ -77,32 +84,5 @@ package body hk_common_pkg is
     end if;
     return result_v;
   end function shift_rounded;
-
-  function shifted_right (
-    value    : signed(31 downto 0);
-    distance : unsigned(4 downto 0)
-  ) return signed is
-    variable sign_v   : signed(15 downto 0);
-    variable result_v : signed(31 downto 0);
-  begin
-    sign_v   := (others => value(31));
-    result_v := value;
-    if distance(4) = '1' then
-      result_v := sign_v & result_v(31 downto 16);
-    end if;
-    if distance(3) = '1' then
-      result_v := sign_v(7 downto 0) & result_v(31 downto 8);
-    end if;
-    if distance(2) = '1' then
-      result_v := sign_v(3 downto 0) & result_v(31 downto 4);
-    end if;
-    if distance(1) = '1' then
-      result_v := sign_v(1 downto 0) & result_v(31 downto 2);
-    end if;
-    if distance(0) = '1' then
-      result_v := sign_v(0 downto 0) & result_v(31 downto 1);
-    end if;
-    return result_v;
-  end function shifted_right;
 
 end package body hk_common_pkg;

@@ -18,6 +18,7 @@ PACKAGES = (
     ("mcap-ros2-support", "importing MCAP", "import"),
     ("pyulog", "importing ULog", "import"),
     ("rosbags", "importing ROS bags", "import"),
+    ("unicorn", "emulating the stm32f103", "stm32"),
 )
 """Optional Python packages: name, what for, and the extra that brings them."""
 

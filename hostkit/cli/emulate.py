@@ -13,6 +13,8 @@ from hostkit.cli.generate import TARGET
 from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
 from hostkit.emulation.board import BuildResult
+from hostkit.emulation.fault import KINDS, parse_fault
+from hostkit.emulation.fault_report import FaultReport
 from hostkit.emulation.pty_server import serve_pty
 from hostkit.emulation.run import EmulationResult, board_of, build, stimulus_of
 from hostkit.emulation.run import emulate as run_emulation
@@ -46,6 +48,15 @@ from hostkit.tuning.evaluation import require_rate
     is_flag=True,
     help="Serve the board's serial port on a pseudo-terminal, in real time, until Ctrl-C.",
 )
+@click.option(
+    "--fault",
+    "fault_texts",
+    multiple=True,
+    metavar="NAME[=AMOUNT][@TIME]",
+    help="Let the sensor fail at TIME of the recording, s; may be given again. Names: "
+    + ", ".join(kind.name for kind in KINDS)
+    + ".",
+)
 @JSON
 def emulate(
     design_file: Path,
@@ -53,19 +64,25 @@ def emulate(
     recording_file: Path,
     code: Path | None,
     pty: bool,
+    fault_texts: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Run the code of DESIGN on an emulated board or simulator, fed with a recording.
 
     Every sample that comes back must equal the integer model bit for bit, else the exit code is 3.
     With --pty the path of a pseudo-terminal is printed, to be given to `hostkit monitor`; the
-    recording is played over and over.
+    recording is played over and over. With --fault samples may be lost, but the firmware must
+    notice and recover, and every sample that it sends must be right.
 
     \b
     Example:
       hostkit emulate design.json --target atmega328p --recording sweep.csv
       hostkit emulate design.json --target atmega328p --recording sweep.csv --pty
+      hostkit emulate design.json --target host --recording sweep.csv --fault self-reset@2.5
     """
+    faults = tuple(parse_fault(text) for text in fault_texts)
+    if pty and faults:
+        raise click.UsageError("--fault needs a run that ends; --pty has no end")
     design, target = read_design(design_file), TARGETS[target_name]
     recording = load(recording_file)
     require_rate(design.rate_hz, recording)
@@ -76,11 +93,14 @@ def emulate(
         if pty:
             serve(folder, target, design, recording)
             return
-        result = run_emulation(folder, target, design, recording, show_progress(len(recording)))
+        shown = show_progress(len(recording))
+        result = run_emulation(folder, target, design, recording, shown, faults=faults)
     if as_json:
         emit_json(emulation_document(result, built))
     else:
         _show(result, built)
+    if result.fault_report is not None and not result.fault_report.recovered:
+        raise VerdictError(f"{target.name} did not recover; it says: {_texts(result.fault_report)}")
     if not result.passed:
         raise VerdictError(
             f"{result.mismatches} of {result.samples} samples differ from the integer model, "
@@ -137,12 +157,36 @@ def emulation_document(
         "missing": result.missing,
         "mismatches": result.mismatches,
         "max_abs_error_deg": None if error is None else math.degrees(error),
-        "cycles_per_update": {"mean": result.cycles_mean, "max": result.cycles_max},
+        "cycles_per_update": {
+            "mean": result.cycles_mean,
+            "max": result.cycles_max,
+            "unit": result.cost_unit,
+        },
         "flash_bytes": sizes and sizes.flash_bytes,
         "ram_bytes": sizes and sizes.ram_bytes,
         "stack_bytes": result.stack_bytes,
-        "faults": dict(result.faults),
+        "faults": {**dict(result.faults), **_report_document(result.fault_report)},
     }
+
+
+def _report_document(report: FaultReport | None) -> dict[str, object]:
+    if report is None:
+        return {}
+    return {
+        "injected": list(report.injected),
+        "struck": report.struck,
+        "reported": {
+            "errors": report.errors,
+            "restarts": report.restarts,
+            "texts": list(report.texts),
+        },
+        "repeated": report.repeated,
+        "recovered": report.recovered,
+    }
+
+
+def _texts(report: FaultReport) -> str:
+    return "; ".join(report.texts) or "nothing"
 
 
 def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None:
@@ -153,7 +197,8 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
         f"{result.mismatches} mismatches; largest difference to the float model {shown}"
     )
     if result.cycles_mean is not None:
-        click.echo(f"cycles per update: {result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max")
+        cost = f"{result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max"
+        click.echo(f"{result.cost_unit} per update: {cost}")
     if isinstance(built, BuildResult) and built.flash_bytes is not None:
         click.echo(
             f"image: {built.flash_bytes} bytes of flash, {built.ram_bytes} of static RAM, "
@@ -161,3 +206,11 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
         )
     for name, count in result.faults:
         click.echo(f"fault {name}: {count}")
+    report = result.fault_report
+    if report is not None:
+        click.echo(
+            f"injected {', '.join(report.injected)}: {report.errors} errors, "
+            f"{report.restarts} restarts, {report.repeated} repeated samples, "
+            f"{'recovered' if report.recovered else 'not recovered'}; "
+            f"the firmware says: {_texts(report)}"
+        )

@@ -17,6 +17,15 @@ Stop = Callable[[], bool]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedFault:
+    """A fault by its code in the virtual sensor, and the row at whose sampling it strikes."""
+
+    code: int
+    row: int
+    amount: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorFaults:
     """What goes wrong on the virtual sensor.
 
@@ -30,12 +39,15 @@ class SensorFaults:
         The data line is held low until so many clocks have come.
     from_row
         The last two begin when so many rows have been played.
+    planned
+        Faults that the virtual sensor carries out by itself, each at its row.
     """
 
     who_am_i: int | None = None
     nack: int = 0
     hold_sda_clocks: int = 0
     from_row: int = 0
+    planned: tuple[PlannedFault, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,17 +112,21 @@ class BoardRun:
     stream
         Every byte of its link.
     cycles_mean, cycles_max
-        Clock cycles of one filter update without interrupts; None where nothing counts them.
+        Cost of one filter update without interrupts; None where nothing counts it.
+    cost_unit
+        What that cost is counted in: clock ``cycles``, or ``instructions`` where the emulator
+        knows no cycles.
     stack_bytes
         Deepest stack; None where nothing measures it.
     faults
         What went wrong, by name: ``unread_samples`` that the firmware did not read in time,
-        ``stalled`` if it stopped taking samples.
+        ``stalled`` if it stopped taking samples, ``struck`` planned faults.
     """
 
     stream: bytes
     cycles_mean: float | None = None
     cycles_max: float | None = None
+    cost_unit: str = "cycles"
     stack_bytes: int | None = None
     faults: tuple[tuple[str, int], ...] = ()
 

@@ -10,7 +10,7 @@ from hostkit.errors import EmulationError
 START_TIMEOUT_S = 60.0
 SAMPLE_TIMEOUT_S = 0.1
 """Added for every sample; an emulated AVR at 100 Hz takes about a millisecond."""
-FAULTS = ("unread_samples", "stalled")
+FAULTS = ("unread_samples", "stalled", "struck")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +36,8 @@ def playback(stimulus: Stimulus, folder: Path) -> Playback:
     ]
     if faults.who_am_i is not None:
         options += ["--who-am-i", str(faults.who_am_i)]
+    for fault in faults.planned:
+        options += ["--fault", f"{fault.code}:{fault.row}:{fault.amount}"]
     if stimulus.loop:
         options.append("--realtime")
     return Playback(table=table, statistics=statistics, options=tuple(options))
@@ -77,5 +79,5 @@ def board_run(play: Playback, heard: bytes, progress: Progress | None) -> BoardR
         cycles_mean=found.get("cycles_mean"),
         cycles_max=found.get("cycles_max"),
         stack_bytes=found.get("stack_bytes"),
-        faults=tuple((name, int(found[name])) for name in FAULTS if found[name]),
+        faults=tuple((name, int(found[name])) for name in FAULTS if found.get(name)),
     )

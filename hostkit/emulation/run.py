@@ -1,7 +1,7 @@
 """Running generated code on a recording, and holding what it says against the models."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -10,16 +10,32 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.design_file import digest
-from hostkit.emulation import avr_board, ghdl, host_board
-from hostkit.emulation.board import BoardRun, BuildResult, Send, Stimulus, Stop
+from hostkit.emulation import avr_board, ghdl, host_board, rp2040_board, stm32_board
+from hostkit.emulation.board import (
+    BoardRun,
+    BuildResult,
+    Send,
+    Stimulus,
+    Stop,
+)
+from hostkit.emulation.fault import Fault, planned_faults
+from hostkit.emulation.fault_report import (
+    FaultReport,
+    answers_of_models,
+    is_active,
+    last_errors,
+    repeats,
+    rows_of,
+    said,
+)
 from hostkit.errors import EmulationError, HostkitError
 from hostkit.filters import FILTERS
-from hostkit.link.decoder import Decoder, trace_of
+from hostkit.link.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
-from hostkit.records import AXES, FilterDesign, read_only
+from hostkit.records import AXES, AngleTrace, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts, to_rate_and_force_g
-from hostkit.sensors.mpu6050 import settle_samples
+from hostkit.sensors.mpu6050 import TEMPERATURE_COUNTS_PER_DEG_C, settle_samples
 from hostkit.targets import Target
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
@@ -43,7 +59,12 @@ class Board(Protocol):
         """Play a stimulus over and over in real time."""
 
 
-BOARDS: dict[str, Board] = {"host": host_board, "atmega328p": avr_board}
+BOARDS: dict[str, Board] = {
+    "host": host_board,
+    "atmega328p": avr_board,
+    "rp2040": rp2040_board,
+    "stm32f103": stm32_board,
+}
 """Emulated boards of the microcontroller targets."""
 
 ROOM_TEMPERATURE_DEG_C = 25.0
@@ -62,11 +83,16 @@ class EmulationResult:
     residual_rad
         Device minus float model, shape ``(samples, A)``.
     cycles_mean, cycles_max
-        Clock cycles of a filter update; None where nothing counts them.
+        Cost of a filter update; None where nothing counts it.
     stack_bytes
         Deepest stack; None where nothing measures it.
     faults
         What went wrong on the board, by name.
+    fault_report
+        What became of the faults that were asked for; None if none were.
+    cost_unit
+        What the cost is counted in: clock ``cycles``, or ``instructions`` where the emulator
+        knows no cycles.
     """
 
     target: str
@@ -78,6 +104,8 @@ class EmulationResult:
     cycles_max: float | None
     stack_bytes: int | None
     faults: tuple[tuple[str, int], ...]
+    fault_report: FaultReport | None = None
+    cost_unit: str = "cycles"
 
     def __post_init__(self) -> None:
         """Make the array read-only."""
@@ -90,7 +118,12 @@ class EmulationResult:
 
     @property
     def passed(self) -> bool:
-        """Whether every sample came back as the integer model says."""
+        """Whether every sample came back as the integer model says.
+
+        A run with faults may lose samples, but must recover, and what it sends must be right.
+        """
+        if self.fault_report is not None:
+            return self.fault_report.recovered and self.mismatches == 0
         return self.samples > 0 and self.missing == 0 and self.mismatches == 0
 
 
@@ -105,6 +138,7 @@ class _Answer:
     cycles_max: float | None
     stack_bytes: int | None = None
     faults: tuple[tuple[str, int], ...] = ()
+    cost_unit: str = "cycles"
 
 
 def build(folder: Path, target: Target) -> BuildResult | tuple[str, ...]:
@@ -136,10 +170,15 @@ def board_of(target: Target) -> Board:
 
 
 def stimulus_of(design: FilterDesign, recording: Recording, *, loop: bool = False) -> Stimulus:
-    """Return what the virtual sensor feels when it plays a recording."""
+    """Return what the virtual sensor feels when it plays a recording.
+
+    A recording without temperature gets one that changes by a count from row to row: a sensor whose
+    data do not change at all is taken for frozen, as no real one is.
+    """
     temperature = recording.temperature_deg_c
     if temperature is None:
-        temperature = np.full(len(recording), ROOM_TEMPERATURE_DEG_C)
+        count = np.arange(len(recording)) % 2
+        temperature = ROOM_TEMPERATURE_DEG_C + count / TEMPERATURE_COUNTS_PER_DEG_C
     return Stimulus(
         angular_rate_rad_s=recording.angular_rate_rad_s,
         specific_force_m_s2=recording.specific_force_m_s2,
@@ -155,6 +194,8 @@ def emulate(
     design: FilterDesign,
     recording: Recording,
     progress: Progress | None = None,
+    *,
+    faults: tuple[Fault, ...] = (),
 ) -> EmulationResult:
     """Run the built code of a folder on a recording and compare.
 
@@ -166,11 +207,14 @@ def emulate(
         The design whose models judge.
     progress
         Called now and then with the number of samples done.
+    faults
+        What is to go wrong on the virtual sensor meanwhile.
 
     Raises
     ------
     EmulationError
-        If the board crashes, hangs, or runs another design.
+        If the board crashes, hangs, or runs another design, or if the faults are too many or do not
+        fit into the recording.
     ToolMissingError
         If the emulator is not installed.
     """
@@ -178,6 +222,13 @@ def emulate(
     counts = to_counts(
         part, design.sensor, recording.angular_rate_rad_s, recording.specific_force_m_s2
     )
+    if faults:
+        if target.kind == "fpga":
+            raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
+        planned = planned_faults(faults, len(recording), design.rate_hz)
+        stimulus = replace(stimulus_of(design, recording), faults=planned)
+        run = board_of(target).run(folder, stimulus, progress=progress)
+        return _compare_with_faults(target, design, counts, run, faults)
     if target.kind == "fpga":
         answer = _simulate(folder, design, counts, progress)
     else:
@@ -207,18 +258,12 @@ def _run(
     progress: Progress | None,
 ) -> _Answer:
     run = board_of(target).run(folder, stimulus_of(design, recording), progress=progress)
-    decoder = Decoder()
-    frames = decoder.feed(run.stream)
-    for frame in frames:
-        if frame.name == "TILT_SAMPLE":
-            _require_digest(bytes(frame.message.digest).hex(), design)
-    hidden_words = len(FILTERS[design.filter].lower(design).hidden)
-    trace = trace_of(frames, AXES[design.axes], hidden_words=hidden_words)
+    frames, trace = _heard(run, design)
     if not len(trace):
-        said = [str(f.message.text) for f in frames if f.name == "STATUSTEXT"]
+        texts = said(frames)
         raise EmulationError(
-            f"{target.name} sent {decoder.frames} messages but no sample"
-            + (f"; it says: {said[-1]!r}" if said else "")
+            f"{target.name} sent {len(frames)} messages but no sample"
+            + (f"; it says: {texts[-1]!r}" if texts else "")
         )
     return _Answer(
         row=trace.sequence,
@@ -228,7 +273,17 @@ def _run(
         cycles_max=run.cycles_max,
         stack_bytes=run.stack_bytes,
         faults=run.faults,
+        cost_unit=run.cost_unit,
     )
+
+
+def _heard(run: BoardRun, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+    frames = Decoder().feed(run.stream)
+    for frame in frames:
+        if frame.name == "TILT_SAMPLE":
+            _require_digest(bytes(frame.message.digest).hex(), design)
+    hidden_words = len(FILTERS[design.filter].lower(design).hidden)
+    return frames, trace_of(frames, AXES[design.axes], hidden_words=hidden_words)
 
 
 def _require_digest(found: str, design: FilterDesign) -> None:
@@ -263,4 +318,40 @@ def _compare(
         cycles_max=answer.cycles_max,
         stack_bytes=answer.stack_bytes,
         faults=answer.faults,
+        cost_unit=answer.cost_unit,
+    )
+
+
+def _compare_with_faults(
+    target: Target, design: FilterDesign, counts: Counts, run: BoardRun, faults: tuple[Fault, ...]
+) -> EmulationResult:
+    """Hold what came back against the models, run anew from every restart that the device tells."""
+    frames, trace = _heard(run, design)
+    sent = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
+    elapsed = np.diff(trace.time_us, prepend=0) * 1e-6 * design.rate_hz
+    row = rows_of(sent, counts, np.ceil(elapsed).astype(np.int64))
+    repeated = repeats(sent) & (row < 0)
+    wanted, exact = answers_of_models(design, sent, trace.restarted)
+    axes = len(AXES[design.axes])
+    wrong = (trace.state_raw != wanted).any(axis=1) | ((row < 0) & ~repeated)
+    return EmulationResult(
+        target=target.name,
+        samples=len(trace),
+        missing=len(counts) - int((row >= 0).sum()),
+        mismatches=int(wrong.sum()),
+        residual_rad=wrap_rad(trace.state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact),
+        cycles_mean=run.cycles_mean,
+        cycles_max=run.cycles_max,
+        stack_bytes=run.stack_bytes,
+        faults=run.faults,
+        cost_unit=run.cost_unit,
+        fault_report=FaultReport(
+            injected=tuple(str(fault) for fault in faults),
+            struck=dict(run.faults).get("struck", 0),
+            errors=last_errors(frames),
+            restarts=max(int(trace.restarted.sum()) - 1, 0),
+            texts=said(frames),
+            repeated=int(repeated.sum()),
+            recovered=bool(len(row) and row[-1] == len(counts) - 1 and is_active(frames)),
+        ),
     )

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from hostkit.errors import ToolMissingError
 
-NODE_MODULES = Path(__file__).parent / "avr8js" / "node_modules"
+NODE_FOLDERS = Path(__file__).parent
+"""Where each npm package has a folder of its name, with the scripts that use it."""
+
 VERSION_TIMEOUT_S = 20.0
 
 
@@ -49,24 +51,35 @@ TOOLS = (
     ),
     Tool(
         name="node",
-        purpose="emulating the atmega328p",
+        purpose="emulating the atmega328p and the rp2040",
         hint=_apt("nodejs npm"),
         command=("node", "--version"),
     ),
     Tool(
         name="avr8js",
         purpose="emulating the atmega328p",
-        hint=f"npm install --prefix {NODE_MODULES.parent}",
+        hint=f"npm install --prefix {NODE_FOLDERS / 'avr8js'}",
+    ),
+    Tool(
+        name="arm-none-eabi-gcc",
+        purpose="the rp2040 and stm32f103 targets",
+        hint=_apt("gcc-arm-none-eabi libnewlib-arm-none-eabi"),
+        command=("arm-none-eabi-gcc", "--version"),
+    ),
+    Tool(
+        name="rp2040js",
+        purpose="emulating the rp2040",
+        hint=f"npm install --prefix {NODE_FOLDERS / 'rp2040js'}",
     ),
     Tool(
         name="clang",
-        purpose="the virtual sensor of the emulated atmega328p",
+        purpose="the virtual sensor of emulated boards",
         hint=_apt("clang"),
         command=("clang", "--version"),
     ),
     Tool(
         name="wasm-ld",
-        purpose="the virtual sensor of the emulated atmega328p",
+        purpose="the virtual sensor of emulated boards",
         hint=_apt("lld"),
         command=("wasm-ld", "--version"),
     ),
@@ -116,7 +129,7 @@ def _program_version(tool: Tool) -> str | None:
 
 
 def _package_version(name: str) -> str | None:
-    package = NODE_MODULES / name / "package.json"
+    package = NODE_FOLDERS / name / "node_modules" / name / "package.json"
     if not package.is_file():
         return None
     found = re.search(r'"version"\s*:\s*"([^"]+)"', package.read_text(encoding="utf-8"))

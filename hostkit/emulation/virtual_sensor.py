@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hostkit.emulation.board import Stimulus
+from hostkit.emulation.board import PlannedFault, Stimulus
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError
 
@@ -104,6 +104,26 @@ class VirtualSensor:
     def hold_sda(self, clocks: int) -> None:
         """Hold the data line low until so many clocks have come."""
         self._function("hold_sda", None)(self._self, ctypes.c_uint32(clocks))
+
+    def plan(self, fault: PlannedFault) -> bool:
+        """Plan a fault; return whether there was room for it, and such a kind."""
+        function = self._function("plan", ctypes.c_bool)
+        words = (ctypes.c_uint32(word) for word in (fault.code, fault.row, fault.amount))
+        return bool(function(self._self, *words))
+
+    @property
+    def struck(self) -> int:
+        """Planned faults that have struck so far."""
+        return int(self._function("struck", ctypes.c_uint32)(self._self))
+
+    def set_self_test(self, codes: tuple[int, int, int, int]) -> None:
+        """Set the factory codes, as the registers SELF_TEST_X to SELF_TEST_A hold them."""
+        self._function("set_self_test", None)(self._self, *(ctypes.c_uint8(c) for c in codes))
+
+    @property
+    def stretch_ns(self) -> int:
+        """How long the sensor holds the clock low from now on."""
+        return int(self._function("stretch_ns", ctypes.c_uint64)(self._self))
 
     def clock(self) -> None:
         """Give one clock outside a transaction."""

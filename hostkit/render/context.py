@@ -6,13 +6,14 @@ from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
-from hostkit.filters.cordic import ROOT_FRACTION_BITS
+from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
+from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.sensors import SENSORS, mpu6050
-from hostkit.sensors.part import Range, Register, RegisterWrite
+from hostkit.sensors.part import Identity, Range, Register, RegisterWrite
 from hostkit.spec import FixedPointSpec
 from hostkit.targets import Target
 
@@ -45,7 +46,10 @@ class SensorContext:
     i2c_address: int
     who_am_i: int
     registers: tuple[Register, ...]
+    identities: tuple[Identity, ...]
     configuration: tuple[RegisterWrite, ...]
+    variant_configuration: tuple[RegisterWrite, ...]
+    frozen_samples: int
     settle_samples: int
     gyro_ranges: tuple[RangeContext, ...]
     accel_ranges: tuple[RangeContext, ...]
@@ -55,6 +59,13 @@ class SensorContext:
     clock_pll: int = mpu6050.CLOCK_PLL_GYRO_X
     signal_path_reset: int = mpu6050.SIGNAL_PATH_RESET_ALL
     data_ready: int = mpu6050.DATA_READY
+    self_test: int = mpu6050.SELF_TEST
+    self_test_gyro_counts: str = mpu6050.SELF_TEST_GYRO_COUNTS.hex()
+    self_test_gyro_growth: str = mpu6050.SELF_TEST_GYRO_GROWTH.hex()
+    self_test_accel_counts: str = mpu6050.SELF_TEST_ACCEL_COUNTS.hex()
+    self_test_accel_growth: str = mpu6050.SELF_TEST_ACCEL_GROWTH.hex()
+    self_test_accel_setting: int = mpu6050.SELF_TEST_ACCEL_SETTING
+    self_test_accel_range: int = 2 << mpu6050.SELF_TEST_ACCEL_SETTING
     burst_bytes: int = mpu6050.BURST_BYTES
     temperature_counts_per_deg_c: int = mpu6050.TEMPERATURE_COUNTS_PER_DEG_C
     temperature_offset_counts: int = round(
@@ -79,8 +90,9 @@ class RenderContext:
     design: DesignContext
     spec: FixedPointSpec
     filter: FilterContext
-    cordic_rom: tuple[int, ...]
+    arctan: ArctanContext
     root_fraction_bits: int
+    stretch_fraction_bits: int
     mounting: tuple[MountingContext, ...]
     has_roll: bool
     has_pitch: bool
@@ -110,8 +122,9 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
         design=_design_context(design),
         spec=spec,
         filter=filter_context(spec),
-        cordic_rom=_padded(spec.cordic.angles_raw),
+        arctan=arctan_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
+        stretch_fraction_bits=STRETCH_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
@@ -133,11 +146,6 @@ def _design_context(design: FilterDesign) -> DesignContext:
     )
 
 
-def _padded(table: tuple[int, ...]) -> tuple[int, ...]:
-    """Fill a table with zeros to a power of two, so that no index can leave it."""
-    return table + (0,) * ((1 << (len(table) - 1).bit_length()) - len(table))
-
-
 def _mounting_context(mounting: Mounting) -> tuple[MountingContext, ...]:
     return tuple(
         MountingContext(name=name, source=source, source_name="xyz"[source], negative=sign < 0)
@@ -154,7 +162,10 @@ def _sensor_context(design: FilterDesign) -> SensorContext:
         i2c_address=sensor.i2c_address,
         who_am_i=sensor.who_am_i,
         registers=sensor.registers,
+        identities=sensor.identities,
         configuration=mpu6050.configuration(design.sensor, design.rate_hz),
+        variant_configuration=mpu6050.variant_configuration(design.sensor),
+        frozen_samples=mpu6050.frozen_samples(design.rate_hz),
         settle_samples=mpu6050.settle_samples(design.sensor, design.rate_hz),
         gyro_ranges=tuple(_range(r, sensor.gyro_rad_s_per_count(r)) for r in sensor.gyro_ranges),
         accel_ranges=tuple(_range(r, sensor.accel_m_s2_per_count(r)) for r in sensor.accel_ranges),

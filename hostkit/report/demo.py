@@ -125,7 +125,7 @@ def _device_table(result: DemoResult) -> Table:
             "samples",
             "mismatches",
             "max error, deg",
-            "cycles, mean",
+            "cost, mean",
             "max",
             "flash, bytes",
             "RAM, bytes",
@@ -133,7 +133,8 @@ def _device_table(result: DemoResult) -> Table:
         rows=tuple(rows),
         note=(
             "Mismatches are against the integer model, bit for bit; the error is against the float "
-            "model on the same counts. Cycles are of one filter update."
+            "model on the same counts. The cost is that of one filter update: clock "
+            "cycles, or instructions on the stm32f103."
         ),
     )
 

@@ -8,13 +8,26 @@ import math
 
 from hostkit.errors import DesignError
 from hostkit.records import SensorConfig
-from hostkit.sensors.part import LowPass, Noise, Range, Register, RegisterWrite, SensorPart
+from hostkit.sensors.part import (
+    Identity,
+    LowPass,
+    Noise,
+    Range,
+    Register,
+    RegisterWrite,
+    SensorPart,
+)
 from hostkit.units import RAD_PER_DEG, STANDARD_GRAVITY_M_S2
 
+SELF_TEST_X = Register(name="SELF_TEST_X", address=0x0D)
+SELF_TEST_Y = Register(name="SELF_TEST_Y", address=0x0E)
+SELF_TEST_Z = Register(name="SELF_TEST_Z", address=0x0F)
+SELF_TEST_A = Register(name="SELF_TEST_A", address=0x10)
 SMPLRT_DIV = Register(name="SMPLRT_DIV", address=0x19)
 CONFIG = Register(name="CONFIG", address=0x1A)
 GYRO_CONFIG = Register(name="GYRO_CONFIG", address=0x1B)
 ACCEL_CONFIG = Register(name="ACCEL_CONFIG", address=0x1C)
+ACCEL_CONFIG_2 = Register(name="ACCEL_CONFIG_2", address=0x1D)
 FIFO_EN = Register(name="FIFO_EN", address=0x23)
 INT_PIN_CFG = Register(name="INT_PIN_CFG", address=0x37)
 INT_ENABLE = Register(name="INT_ENABLE", address=0x38)
@@ -22,6 +35,7 @@ INT_STATUS = Register(name="INT_STATUS", address=0x3A)
 ACCEL_XOUT_H = Register(name="ACCEL_XOUT_H", address=0x3B)
 TEMP_OUT_H = Register(name="TEMP_OUT_H", address=0x41)
 GYRO_XOUT_H = Register(name="GYRO_XOUT_H", address=0x43)
+EXT_SENS_DATA_00 = Register(name="EXT_SENS_DATA_00", address=0x49)
 SIGNAL_PATH_RESET = Register(name="SIGNAL_PATH_RESET", address=0x68)
 USER_CTRL = Register(name="USER_CTRL", address=0x6A)
 PWR_MGMT_1 = Register(name="PWR_MGMT_1", address=0x6B, reset_value=0x40)
@@ -32,13 +46,43 @@ DEVICE_RESET = 0x80
 SLEEP = 0x40
 CLOCK_PLL_GYRO_X = 0x01
 SIGNAL_PATH_RESET_ALL = 0x07
-INT_LATCHED_CLEARED_BY_ANY_READ = 0x30
+INT_LATCHED = 0x20
+"""INT stays up until INT_STATUS is read, so that no other read can lose a sample."""
 DATA_READY = 0x01
+SELF_TEST = 0xE0
 FULL_SCALE_SHIFT = 3
 BURST_BYTES = 14
 
+SELF_TEST_ACCEL_SETTING = 2
+SELF_TEST_GYRO_COUNTS = 25.0 * 131.0
+SELF_TEST_GYRO_GROWTH = 1.046
+SELF_TEST_ACCEL_COUNTS = 4096.0 * 0.34
+SELF_TEST_ACCEL_GROWTH = (0.92 / 0.34) ** (1.0 / 30.0)
+"""Factory trim of code 1, in counts of +-250 deg/s and of +-8 g, and its growth with each code."""
+
+FROZEN_S = 0.5
+FROZEN_SAMPLES_MIN = 50
+"""A sensor that gives one sample over for so long, and so often, is taken for frozen."""
+
 TEMPERATURE_COUNTS_PER_DEG_C = 340
 TEMPERATURE_OFFSET_DEG_C = 36.53
+
+IDENTITIES = (
+    Identity(value=0x68, part="MPU-6050", warned=False),
+    Identity(value=0x70, part="MPU-6500", own_accel_filter=True),
+    Identity(value=0x71, part="MPU-9250", own_accel_filter=True),
+    Identity(value=0x73, part="MPU-9255", own_accel_filter=True),
+    Identity(value=0x98, part="ICM-20689", own_accel_filter=True),
+    Identity(value=0x72, part="unknown clone"),
+    Identity(value=0x74, part="unknown clone"),
+    Identity(value=0x75, part="unknown clone"),
+    Identity(value=0x12, part="ICM-20602", accepted=False),
+)
+"""Parts of compatible register map that are sold as MPU-6050, by their answer to WHO_AM_I.
+
+Sources: the register map; the PX4 drivers for the parts of the same maker; for the clones reports
+of owners (Levi--G/IMU-WhoAmIVerifier 1, 2 and 3, ElectronicCats/mpu6050 21).
+"""
 
 MPU6050 = SensorPart(
     name="mpu6050",
@@ -71,10 +115,15 @@ MPU6050 = SensorPart(
         accel_noise_density_m_s2_rthz=400e-6 * STANDARD_GRAVITY_M_S2,
     ),
     registers=(
+        SELF_TEST_X,
+        SELF_TEST_Y,
+        SELF_TEST_Z,
+        SELF_TEST_A,
         SMPLRT_DIV,
         CONFIG,
         GYRO_CONFIG,
         ACCEL_CONFIG,
+        ACCEL_CONFIG_2,
         FIFO_EN,
         INT_PIN_CFG,
         INT_ENABLE,
@@ -82,12 +131,14 @@ MPU6050 = SensorPart(
         ACCEL_XOUT_H,
         TEMP_OUT_H,
         GYRO_XOUT_H,
+        EXT_SENS_DATA_00,
         SIGNAL_PATH_RESET,
         USER_CTRL,
         PWR_MGMT_1,
         PWR_MGMT_2,
         WHO_AM_I,
     ),
+    identities=IDENTITIES,
     sample_base_rate_hz=1000.0,
     sample_divider_max=255,
 )
@@ -120,12 +171,26 @@ def configuration(config: SensorConfig, rate_hz: float) -> tuple[RegisterWrite, 
         RegisterWrite(register=INT_ENABLE, value=0),
         RegisterWrite(register=USER_CTRL, value=0),
         RegisterWrite(register=FIFO_EN, value=0),
+        RegisterWrite(register=PWR_MGMT_2, value=0),
         RegisterWrite(register=CONFIG, value=low_pass.setting),
         RegisterWrite(register=SMPLRT_DIV, value=divider),
         RegisterWrite(register=GYRO_CONFIG, value=gyro.setting << FULL_SCALE_SHIFT),
         RegisterWrite(register=ACCEL_CONFIG, value=accel.setting << FULL_SCALE_SHIFT),
-        RegisterWrite(register=INT_PIN_CFG, value=INT_LATCHED_CLEARED_BY_ANY_READ),
+        RegisterWrite(register=INT_PIN_CFG, value=INT_LATCHED),
     )
+
+
+def variant_configuration(config: SensorConfig) -> tuple[RegisterWrite, ...]:
+    """Return what is written besides to a part whose accelerometer has its own low-pass register.
+
+    Its settings 1 to 6 have nearly the bandwidths of the MPU-6050's common filter.
+    """
+    return (RegisterWrite(register=ACCEL_CONFIG_2, value=MPU6050.low_pass(config).setting),)
+
+
+def frozen_samples(rate_hz: float) -> int:
+    """Return after how many samples that are equal in every bit the sensor is taken for frozen."""
+    return max(FROZEN_SAMPLES_MIN, math.ceil(FROZEN_S * rate_hz))
 
 
 def settle_samples(config: SensorConfig, rate_hz: float) -> int:

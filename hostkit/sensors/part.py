@@ -56,6 +56,31 @@ class RegisterWrite:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Identity:
+    """What an answer to the question for the identity means, and what the driver does then.
+
+    Attributes
+    ----------
+    value
+        The answer.
+    part
+        The part that answers so, for messages.
+    accepted
+        Whether the driver runs it; else it is refused, with the part's name.
+    warned
+        Whether the driver says that it is not the part of the design.
+    own_accel_filter
+        Whether the accelerometer has a low-pass register of its own.
+    """
+
+    value: int
+    part: str
+    accepted: bool = True
+    warned: bool = True
+    own_accel_filter: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorPart:
     """A sensor by its register map and figures.
 
@@ -65,6 +90,8 @@ class SensorPart:
         Full scales in deg/s and in g, from narrow to wide.
     registers
         Every register the driver or the virtual sensor uses.
+    identities
+        Every answer to WHO_AM_I that is known; the driver refuses all others.
     """
 
     name: str
@@ -76,6 +103,7 @@ class SensorPart:
     low_passes: tuple[LowPass, ...]
     noise: Noise
     registers: tuple[Register, ...]
+    identities: tuple[Identity, ...]
     sample_base_rate_hz: float
     sample_divider_max: int
 

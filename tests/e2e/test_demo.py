@@ -10,6 +10,7 @@ import pytest
 
 from hostkit.cli.main import run
 from hostkit.emulation.tools import TOOLS, find
+from hostkit.targets import TARGETS
 
 
 class Page(HTMLParser):
@@ -43,9 +44,7 @@ def test_demo_passes_and_its_report_stands_alone(
         "simulate",
         "simulate",
         "tune",
-        "host",
-        "atmega328p",
-        "spartan3adsp",
+        *TARGETS.names(),
         "monitor",
     ]
     page = Page()
@@ -67,7 +66,7 @@ def test_demo_goes_on_without_optional_toolchains(
     only.mkdir()
     for folder in os.environ["PATH"].split(os.pathsep):
         for program in Path(folder).glob("*"):
-            optional = program.name.startswith(("avr-", "ghdl", "node", "clang", "wasm-ld"))
+            optional = program.name.startswith(("avr-", "arm-", "ghdl", "node", "clang", "wasm-ld"))
             if not optional and not (only / program.name).exists():
                 (only / program.name).symlink_to(program)
     monkeypatch.setenv("PATH", str(only))
@@ -77,5 +76,7 @@ def test_demo_goes_on_without_optional_toolchains(
     assert document["verdict"] == "pass"
     assert "left out" in details["atmega328p"]
     assert "left out" in details["spartan3adsp"]
+    assert "left out" in details["rp2040"]
+    assert "left out" in details["stm32f103"]
     assert details["host"].startswith("3000 samples")
     assert details["monitor"].startswith("host over a pseudo-terminal")

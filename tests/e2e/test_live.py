@@ -119,4 +119,9 @@ def test_one_changed_bit_of_the_filter_is_found(folder, code, capsys, tmp_path: 
 
 
 def test_targets_with_a_port_are_the_microcontrollers() -> None:
-    assert {t.name for t in TARGETS if t.kind == "mcu"} == {"host", "atmega328p"}
+    assert {t.name for t in TARGETS if t.kind == "mcu"} == {
+        "host",
+        "atmega328p",
+        "rp2040",
+        "stm32f103",
+    }

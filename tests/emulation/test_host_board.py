@@ -50,12 +50,12 @@ def test_two_runs_are_equal(host_folder: Path) -> None:
 
 
 def test_wrong_identity_is_refused(host_folder: Path) -> None:
-    run = host_board.run(host_folder, with_faults(stimulus(), who_am_i=0x70))
+    run = host_board.run(host_folder, with_faults(stimulus(), who_am_i=0x12))
     heard = hear(run)
     assert heard.samples == []
     assert heard.states[0] == BOOT
     assert set(heard.states[1:]) == {CRITICAL}
-    assert {t.text for t in heard.of("STATUSTEXT")} == {"MPU-6050 refused: WHO_AM_I is 0x70"}
+    assert {t.text for t in heard.of("STATUSTEXT")} == {"MPU-6050 refused: WHO_AM_I is 0x12"}
     assert dict(run.faults)["stalled"] == 1
 
 

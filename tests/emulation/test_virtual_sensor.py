@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from boards import generated, require_or_skip
 
-from hostkit.emulation.board import Stimulus
+from hostkit.emulation.board import PlannedFault, Stimulus
+from hostkit.emulation.fault import KINDS
 from hostkit.emulation.virtual_sensor import NEVER, VirtualSensor, compile_shared
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import quantise
@@ -41,6 +42,7 @@ class Bench:
     """A bus master in front of a sensor; every call also lets a little time pass."""
 
     def __init__(self, library: Path, feels: Stimulus) -> None:
+        self.library = library
         self.sensor = VirtualSensor(library, feels)
         self.feels = feels
         self.now = 0
@@ -85,6 +87,10 @@ class Bench:
 
     def enable(self) -> None:
         assert self.write(INT_ENABLE, 0x01)
+
+    def plan(self, name: str, *, row: int = 0, amount: int = 0) -> None:
+        code = next(kind.code for kind in KINDS if kind.name == name)
+        assert self.sensor.plan(PlannedFault(code=code, row=row, amount=amount))
 
 
 @pytest.fixture
@@ -404,3 +410,163 @@ def test_identity_on_demand_survives_a_reset(bench: Bench) -> None:
     bench.write(POWER, 0x80)
     bench.wait(100 * MS)
     assert bench.read(WHO_AM_I) == [0x70]
+
+
+def running(bench: Bench) -> Bench:
+    """Sampling, with row 0 read."""
+    bench.configure(pin=0x20)
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(0)
+    bench.read(INT_STATUS)
+    return bench
+
+
+def test_written_bytes_are_not_acknowledged(bench: Bench) -> None:
+    bench.plan("nack-data", amount=2)
+    assert not bench.write(CONFIG, 1)
+    assert not bench.write(CONFIG, 1)
+    assert bench.write(CONFIG, 1)
+    assert bench.sensor.struck == 1
+
+
+def test_a_burst_breaks_off_once(bench: Bench) -> None:
+    bench.plan("torn-burst", row=1, amount=5)
+    running(bench)
+    bench.wait(10 * MS)
+    assert bench.read(CONFIG, 4)[0] == 3, "a shorter read is not touched"
+    data = bench.read(BURST, 14)
+    assert data[5:] == [0xFF] * 9
+    assert bench.burst() == bench.expected(1)
+    assert data[:5] == bench.read(BURST, 5)
+
+
+def test_the_clock_is_held_once(bench: Bench) -> None:
+    bench.plan("clock-stretch", row=1, amount=250)
+    running(bench)
+    assert bench.sensor.stretch_ns == 0
+    bench.wait(10 * MS)
+    assert bench.sensor.stretch_ns == 250_000
+    bench.wait(100_000)
+    assert bench.sensor.stretch_ns == 150_000
+    bench.wait(150_000)
+    assert bench.sensor.stretch_ns == 0
+
+
+def test_a_register_upset_acts_from_its_row_on(bench: Bench) -> None:
+    bench.plan("register-upset", row=2, amount=GYRO_CONFIG * 256 + 0x18)
+    running(bench)
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(1)
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(2, gyro=3)
+    assert bench.read(GYRO_CONFIG) == [0x18]
+
+
+def test_a_rate_upset_gives_no_row_twice(bench: Bench) -> None:
+    bench.plan("register-upset", row=1, amount=SMPLRT_DIV * 256 + 0x08)
+    running(bench)
+    bench.wait(10 * MS)
+    assert bench.sensor.rows_played == 1
+    bench.wait(2 * MS)
+    assert bench.sensor.rows_played == 2
+    assert bench.burst() == bench.expected(1)
+
+
+def test_a_self_reset_loses_all_registers_and_no_row(bench: Bench) -> None:
+    bench.plan("self-reset", row=1)
+    running(bench)
+    bench.wait(10 * MS)
+    assert not bench.sensor.start(ADDRESS, read=False), "deaf at first"
+    bench.wait(2 * MS)
+    assert bench.read(POWER) == [0x80]
+    bench.wait(20 * MS)
+    assert bench.read(POWER) == [0x40]
+    assert bench.read(SMPLRT_DIV, 4) == [0] * 4
+    assert not bench.sensor.int_pin
+    bench.configure(pin=0x20)
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(1)
+
+
+def test_frozen_data_are_announced_until_a_reset(bench: Bench) -> None:
+    bench.plan("frozen-data", row=1)
+    running(bench)
+    for _ in range(3):
+        bench.wait(10 * MS)
+        assert bench.sensor.int_pin
+        assert bench.burst() == bench.expected(0)
+        bench.read(INT_STATUS)
+    bench.write(POWER, 0x80)
+    bench.wait(100 * MS)
+    bench.configure()
+    bench.enable()
+    bench.wait(10 * MS)
+    assert bench.burst() == bench.expected(4)
+
+
+def test_lost_data_ready_stands_in_the_status_only(bench: Bench) -> None:
+    bench.plan("lost-data-ready", row=1, amount=2)
+    running(bench)
+    for row, pin in ((1, False), (2, False), (3, True)):
+        bench.wait(10 * MS)
+        assert bench.sensor.int_pin is pin
+        assert bench.read(INT_STATUS) == [1]
+        assert bench.burst() == bench.expected(row)
+
+
+def test_what_concerns_the_bus_strikes_at_power_up(bench: Bench) -> None:
+    bench.plan("wrong-identity", amount=0x98)
+    bench.plan("stuck-sda", amount=1)
+    bench.plan("self-reset")
+    assert bench.sensor.struck == 2
+    assert bench.sensor.sda_low
+    bench.sensor.clock()
+    assert bench.read(WHO_AM_I) == [0x98]
+
+
+def test_no_more_faults_than_there_is_room_for(bench: Bench) -> None:
+    for row in range(16):
+        bench.plan("self-reset", row=row + 1)
+    assert not bench.sensor.plan(PlannedFault(code=7, row=0, amount=0))
+    assert not Bench(bench.library, table()).sensor.plan(PlannedFault(code=10, row=0, amount=0))
+
+
+@pytest.mark.parametrize(("identity", "kept"), [(0x68, 0), (0x70, 5), (0x98, 5), (0x72, 0)])
+def test_only_some_parts_have_an_accelerometer_filter_of_their_own(
+    bench: Bench, identity: int, kept: int
+) -> None:
+    bench.sensor.set_identity(identity)
+    bench.write(0x1D, 5)
+    assert bench.read(0x1D) == [kept]
+
+
+@pytest.mark.parametrize("gyro", range(4))
+@pytest.mark.parametrize("accel", range(4))
+def test_self_test_adds_the_factory_trim(library: Path, gyro: int, accel: int) -> None:
+    """RM-MPU-6000A, section 4.1: the trim by the codes, in every range, y of the gyro negative."""
+    rest = replace(
+        table(4), angular_rate_rad_s=np.zeros((4, 3)), specific_force_m_s2=np.zeros((4, 3))
+    )
+    bench = Bench(library, rest)
+    codes = {"accel": (0b01010, 0b00111, 0), "gyro": (1, 12, 31)}
+    high = [a >> 2 << 5 | g for a, g in zip(codes["accel"], codes["gyro"], strict=True)]
+    low = (codes["accel"][0] & 3) << 4 | (codes["accel"][1] & 3) << 2
+    bench.sensor.set_self_test((high[0], high[1], high[2], low))
+    bench.configure()
+    bench.write(GYRO_CONFIG, 0xE0 | gyro << 3)
+    bench.write(ACCEL_CONFIG, 0xC0 | accel << 3)
+    bench.enable()
+    bench.wait(10 * MS)
+    counts = bench.burst()
+    gyro_trim = [25 * 131 * 1.046 ** (code - 1) / 2**gyro for code in codes["gyro"]]
+    accel_trim = [
+        4096 * 0.34 * (0.92 / 0.34) ** ((c - 1) / 30) * 4 / 2**accel for c in codes["accel"][:2]
+    ]
+    wanted = [*accel_trim, 0.0, gyro_trim[0], -gyro_trim[1], gyro_trim[2]]
+    np.testing.assert_allclose([*counts[:3], *counts[4:]], wanted, atol=0.51)
+    bench.write(GYRO_CONFIG, gyro << 3)
+    bench.write(ACCEL_CONFIG, accel << 3)
+    bench.wait(10 * MS)
+    assert [*bench.burst()[:3], *bench.burst()[4:]] == [0] * 6

@@ -107,15 +107,33 @@ def test_a_register_that_does_not_take_its_value_restarts(
     assert dict(run.faults)["stalled"] == 1
 
 
+@pytest.mark.parametrize(("identity", "starts"), [(0x68, True), (0x70, False), (0x72, True)])
+def test_a_sister_part_must_keep_its_accelerometer_filter(
+    host_folder: Path, tmp_path: Path, identity: int, starts: bool
+) -> None:
+    folder = copied(host_folder, tmp_path / "code")
+    model = folder / "hk_virtual_mpu6050.c"
+    changed(model, "if (own_accel_filter(sensor->faults.who_am_i)) {", "if (address == 0U) {")
+    changed(
+        model,
+        "static bool own_accel_filter",
+        "bool own_accel_filter(uint8_t);\nbool own_accel_filter",
+    )
+    host_board.build(folder)
+    heard = hear(host_board.run(folder, with_faults(stimulus(10), who_am_i=identity)))
+    assert (len(heard.samples) == 10) is starts
+    texts = {t.text for t in heard.of("STATUSTEXT")}
+    assert ("MPU-6050: restart, register 0x1D was 0x00 #1" in texts) is not starts
+
+
 def test_a_sensor_that_falls_silent_is_reset(host_folder: Path, tmp_path: Path) -> None:
-    """The model goes to sleep by itself once, as after a dip of its supply."""
+    """The model stops once, with every register as it was set."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
         folder / "hk_virtual_mpu6050.c",
-        "    const double *row = take_row(sensor);\n",
-        "    const double *row = take_row(sensor);\n\n"
+        "    row = take_row(sensor);\n",
+        "    row = take_row(sensor);\n"
         "    if (sensor->replay.rows_played == 20U) {\n"
-        "        sensor->reg[HK_REG_PWR_MGMT_1] = HK_RESET_PWR_MGMT_1;\n"
         "        sensor->sample_ns = HK_NEVER;\n        sensor->replay.rows_played++;\n"
         "        return;\n    }\n",
     )
@@ -125,6 +143,9 @@ def test_a_sensor_that_falls_silent_is_reset(host_folder: Path, tmp_path: Path) 
     assert restarts == [0, 19]
     assert len(heard.samples) == 59
     assert heard.samples[-1].i2c_errors == 1
+    assert [t.text for t in heard.of("STATUSTEXT")] == ["MPU-6050: silent, restart #1"]
+    assert heard.states.count(CRITICAL) >= 1
+    assert heard.states[-1] == ACTIVE
 
 
 @pytest.mark.parametrize(

@@ -116,7 +116,10 @@ def build_broken_core(
 
 
 def count_vectors() -> tuple[IntArray, IntArray]:
-    """Return accelerometer and gyroscope counts: corners, random full range, smooth motion."""
+    """Return accelerometer and gyroscope counts.
+
+    Corners, random full range, smooth motion, a force in every turn of the arc tangent.
+    """
     rng = np.random.default_rng(2017)
     corners = np.array(list(product(CORNERS, repeat=3)), dtype=np.int64)
     shuffled = rng.permutation(corners)
@@ -126,6 +129,7 @@ def count_vectors() -> tuple[IntArray, IntArray]:
         (rng.permutation(corners), rng.integers(-300, 301, size=corners.shape)),
         (noise[:, :3], noise[:, 3:]),
         *(_two_turns_about(axis) for axis in range(3)),
+        _every_turn(),
         strict=True,
     )
     return np.concatenate(accel), np.concatenate(gyro)
@@ -148,3 +152,11 @@ def _two_turns_about(axis: int) -> tuple[IntArray, IntArray]:
     rate = np.zeros_like(force)
     rate[:, axis] = 12000.0
     return np.rint(force).astype(np.int64), np.rint(rate).astype(np.int64)
+
+
+def _every_turn() -> tuple[IntArray, IntArray]:
+    """Point the force into the middle of each of the 64 turns of the first octant of y and z."""
+    force = np.full((64, 3), 16000)
+    force[:, 0] = 9000
+    force[:, 1] = 16000 * (2 * np.arange(64) + 1) // 128
+    return force, np.zeros_like(force)

@@ -63,9 +63,9 @@ def test_a_folder_that_was_not_analysed_is_refused(folder: Path, fake_ghdl: Path
 
 @pytest.mark.usefixtures("ghdl_installed")
 def test_the_first_error_of_ghdl_is_the_message(folder: Path) -> None:
-    source = folder / "hk_cordic.vhd"
-    source.write_text(source.read_text().replace("turn_v   :=", "trun_v   :="))
-    with pytest.raises(BuildError, match=r'hk_cordic\.vhd:\d+:\d+: no declaration for "trun_v"'):
+    source = folder / "hk_arctan.vhd"
+    source.write_text(source.read_text().replace("turn_v  :=", "trun_v  :="))
+    with pytest.raises(BuildError, match=r'hk_arctan\.vhd:\d+:\d+: no declaration for "trun_v"'):
         ghdl.analyse(folder)
 
 

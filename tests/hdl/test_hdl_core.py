@@ -18,17 +18,18 @@ from hdl_cases import (
 from hostkit.design_file import digest
 from hostkit.emulation import ghdl
 from hostkit.errors import EmulationError
+from hostkit.filters.arctan import arctan_table, atan2_count
 from hostkit.filters.complementary import lower, run_integer
 from hostkit.records import FilterDesign
 
 ACCEL, GYRO = count_vectors()
 LATENCY_CYCLES = {
-    ("atan2", "roll"): 26,
-    ("atan2", "pitch"): 48,
-    ("atan2", "both"): 48,
-    ("arcsin", "roll"): 53,
-    ("arcsin", "pitch"): 54,
-    ("arcsin", "both"): 78,
+    ("atan2", "roll"): 29,
+    ("atan2", "pitch"): 54,
+    ("atan2", "both"): 54,
+    ("arcsin", "roll"): 56,
+    ("arcsin", "pitch"): 57,
+    ("arcsin", "both"): 84,
 }
 
 
@@ -112,7 +113,7 @@ def test_a_reset_in_any_state_starts_over(core: Core) -> None:
 @both_methods
 def test_the_core_converts_for_synthesis(core: Core) -> None:
     packages = ("hk_common_pkg", "hk_design_pkg", "hk_complementary_pkg")
-    units = ("hk_multiplier", "hk_root", "hk_cordic", "hk_complementary")
+    units = ("hk_multiplier", "hk_root", "hk_arctan", "hk_complementary")
     sources = [f"{name}.vhd" for name in (*packages, *units)]
     build = core.folder / "synthesis"
     build.mkdir()
@@ -139,16 +140,45 @@ def test_the_core_converts_for_synthesis(core: Core) -> None:
     ("source", "good", "bad"),
     [
         ("hk_design_pkg.vhd", "to_signed(117441, 18)", "to_signed(117440, 18)"),
-        ("hk_design_pkg.vhd", "to_signed(10430, 32)", "to_signed(10431, 32)"),
+        ("hk_design_pkg.vhd", "to_signed(41719, 18)", "to_signed(41718, 18)"),
         ("hk_common_pkg.vhd", "result_v + 1", "result_v + 0"),
-        ("hk_cordic.vhd", "if nothing_v then", "if false then"),
+        ("hk_arctan.vhd", "if nothing_v then", "if false then"),
     ],
-    ids=["blend", "angle table", "rounding", "zero vector"],
+    ids=["blend", "slope", "rounding", "zero vector"],
 )
 def test_one_wrong_bit_is_found(tmp_path: Path, source: str, good: str, bad: str) -> None:
     core = build_broken_core(tmp_path, source=source, good=good, bad=bad)
     run = ghdl.simulate(core.folder, ACCEL, GYRO)
     assert np.any(answer(run) != core.expected(ACCEL, GYRO))
+
+
+@pytest.mark.usefixtures("ghdl_installed")
+@pytest.mark.parametrize(
+    ("source", "good", "bad"),
+    [
+        ("hk_design_pkg.vhd", " 10679838,", " 10679839,"),
+        ("hk_design_pkg.vhd", " 531488619", " 531488618"),
+        ("hk_design_pkg.vhd", " 32,", " 33,"),
+        ("hk_design_pkg.vhd", " 105699", " 105698"),
+        ("hk_arctan.vhd", "if count_v = 8 then", "if count_v = 7 then"),
+        ("hk_arctan.vhd", "if y > x then", "if y >= x then"),
+        ("hk_arctan.vhd", "steep_v and below_v", "steep_v and behind_v"),
+    ],
+)
+def test_a_fault_in_the_arc_tangent_is_found(
+    tmp_path: Path, source: str, good: str, bad: str
+) -> None:
+    """With eta near zero a core says what it measured, to the last bit."""
+    built = design(eta=0.001)
+    core = build_broken_core(tmp_path, source=source, good=good, bad=bad, built=built)
+    run = ghdl.simulate(core.folder, ACCEL, GYRO)
+    assert np.any(answer(run) != core.expected(ACCEL, GYRO))
+
+
+def test_the_vectors_reach_every_turn_of_the_arc_tangent() -> None:
+    table = arctan_table()
+    stretches = atan2_count(table, ACCEL[:, 1], ACCEL[:, 2])[2]
+    assert set(stretches.tolist()) == set(table.stretches_raw)
 
 
 @pytest.mark.usefixtures("ghdl_installed")

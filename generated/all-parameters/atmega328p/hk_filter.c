@@ -1,8 +1,10 @@
 /* made by hostkit 0.1.0 from design 0099cab74159; do not edit; template complementary/hk_filter.c.j2 */
 #include "hk_filter.h"
 
-#include "hk_cordic.h"
+#include "hk_arctan.h"
 #include "hk_fixed.h"
+
+#include <stddef.h>
 
 /* Body axes from sensor axes; a count is widened first, because -(-32768) is no int16_t. */
 #define HK_BODY_X(count) ((int32_t)(count)[0])
@@ -29,10 +31,10 @@ void hk_filter_init(hk_filter_t *filter)
 /* Tilt from specific force, half turns. */
 static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
 {
-    int32_t magnitude;
+    hk_length_t length;
 
-    tilt[HK_ROLL] = hk_atan2(HK_BODY_Y(accel_count), HK_BODY_Z(accel_count), &magnitude);
-    tilt[HK_PITCH] = hk_atan2_magnitude(-HK_BODY_X(accel_count), magnitude);
+    tilt[HK_ROLL] = hk_atan2(HK_BODY_Y(accel_count), HK_BODY_Z(accel_count), &length);
+    tilt[HK_PITCH] = hk_atan2_length(-HK_BODY_X(accel_count), &length);
     tilt[HK_ROLL] = hk_wrap_sub(tilt[HK_ROLL], HK_TILT_OFFSET_ROLL);
     tilt[HK_PITCH] = hk_wrap_sub(tilt[HK_PITCH], HK_TILT_OFFSET_PITCH);
 }

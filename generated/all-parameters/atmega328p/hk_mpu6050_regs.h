@@ -7,7 +7,27 @@
 #define HK_MPU6050_ADDRESS 0x68
 #define HK_MPU6050_ID      0x68
 
+/* X(WHO_AM_I, part, accepted, warned of, accelerometer with its own low-pass register) */
+#define HK_MPU6050_IDENTITIES(X) \
+    X(0x68, "MPU-6050", true, false, false) \
+    X(0x70, "MPU-6500", true, true, true) \
+    X(0x71, "MPU-9250", true, true, true) \
+    X(0x73, "MPU-9255", true, true, true) \
+    X(0x98, "ICM-20689", true, true, true) \
+    X(0x72, "unknown clone", true, true, false) \
+    X(0x74, "unknown clone", true, true, false) \
+    X(0x75, "unknown clone", true, true, false) \
+    X(0x12, "ICM-20602", false, true, false)
+
 /* Register addresses, and values after a reset. */
+#define HK_REG_SELF_TEST_X 0x0D
+#define HK_RESET_SELF_TEST_X 0x00
+#define HK_REG_SELF_TEST_Y 0x0E
+#define HK_RESET_SELF_TEST_Y 0x00
+#define HK_REG_SELF_TEST_Z 0x0F
+#define HK_RESET_SELF_TEST_Z 0x00
+#define HK_REG_SELF_TEST_A 0x10
+#define HK_RESET_SELF_TEST_A 0x00
 #define HK_REG_SMPLRT_DIV 0x19
 #define HK_RESET_SMPLRT_DIV 0x00
 #define HK_REG_CONFIG 0x1A
@@ -16,6 +36,8 @@
 #define HK_RESET_GYRO_CONFIG 0x00
 #define HK_REG_ACCEL_CONFIG 0x1C
 #define HK_RESET_ACCEL_CONFIG 0x00
+#define HK_REG_ACCEL_CONFIG_2 0x1D
+#define HK_RESET_ACCEL_CONFIG_2 0x00
 #define HK_REG_FIFO_EN 0x23
 #define HK_RESET_FIFO_EN 0x00
 #define HK_REG_INT_PIN_CFG 0x37
@@ -30,6 +52,8 @@
 #define HK_RESET_TEMP_OUT_H 0x00
 #define HK_REG_GYRO_XOUT_H 0x43
 #define HK_RESET_GYRO_XOUT_H 0x00
+#define HK_REG_EXT_SENS_DATA_00 0x49
+#define HK_RESET_EXT_SENS_DATA_00 0x00
 #define HK_REG_SIGNAL_PATH_RESET 0x68
 #define HK_RESET_SIGNAL_PATH_RESET 0x00
 #define HK_REG_USER_CTRL 0x6A
@@ -43,10 +67,15 @@
 
 /* X(address, value after a reset) for every register. */
 #define HK_MPU6050_REGISTERS(X) \
+    X(0x0D, 0x00) \
+    X(0x0E, 0x00) \
+    X(0x0F, 0x00) \
+    X(0x10, 0x00) \
     X(0x19, 0x00) \
     X(0x1A, 0x00) \
     X(0x1B, 0x00) \
     X(0x1C, 0x00) \
+    X(0x1D, 0x00) \
     X(0x23, 0x00) \
     X(0x37, 0x00) \
     X(0x38, 0x00) \
@@ -54,6 +83,7 @@
     X(0x3B, 0x00) \
     X(0x41, 0x00) \
     X(0x43, 0x00) \
+    X(0x49, 0x00) \
     X(0x68, 0x00) \
     X(0x6A, 0x00) \
     X(0x6B, 0x40) \
@@ -66,6 +96,7 @@
 #define HK_PWR_CLOCK_PLL      0x01
 #define HK_SIGNAL_PATH_RESET  0x07
 #define HK_INT_DATA_READY     0x01
+#define HK_SELF_TEST           0xE0
 #define HK_MPU6050_BURST_BYTES 14
 
 /* X(field that selects the range, counts per SI unit) for every range. */
@@ -79,6 +110,14 @@
     X(1, 0x1.a1acfea981812p+9 /* m/s^2, +-4 g */) \
     X(2, 0x1.a1acfea981812p+8 /* m/s^2, +-8 g */) \
     X(3, 0x1.a1acfea981812p+7 /* m/s^2, +-16 g */)
+
+/* Self-test: the factory's response for code 1, in counts of the narrowest gyroscope range and of
+ * the accelerometer range +-8 g, and its growth from code to code. */
+#define HK_SELF_TEST_GYRO_COUNTS  0x1.9960000000000p+11
+#define HK_SELF_TEST_GYRO_GROWTH  0x1.0bc6a7ef9db23p+0
+#define HK_SELF_TEST_ACCEL_COUNTS 0x1.5c28f5c28f5c3p+10
+#define HK_SELF_TEST_ACCEL_GROWTH 0x1.08a3065c31efdp+0
+#define HK_SELF_TEST_ACCEL_SETTING 2
 
 /* Temperature count = 340 * degC - offset. */
 #define HK_TEMPERATURE_COUNTS_PER_DEG_C 340

@@ -14,11 +14,19 @@
     X(0x38, 0x00) /* INT_ENABLE */ \
     X(0x6A, 0x00) /* USER_CTRL */ \
     X(0x23, 0x00) /* FIFO_EN */ \
+    X(0x6C, 0x00) /* PWR_MGMT_2 */ \
     X(0x1A, 0x03) /* CONFIG */ \
     X(0x19, 0x09) /* SMPLRT_DIV */ \
     X(0x1B, 0x08) /* GYRO_CONFIG */ \
     X(0x1C, 0x00) /* ACCEL_CONFIG */ \
-    X(0x37, 0x30) /* INT_PIN_CFG */
+    X(0x37, 0x20) /* INT_PIN_CFG */
+
+/* The same for parts whose accelerometer has a low-pass register of its own; written last. */
+#define HK_VARIANT_CONFIGURATION(X) \
+    X(0x1D, 0x03) /* ACCEL_CONFIG_2 */
+
+/* A sample that comes so often, equal in every bit, is not measured any more. */
+#define HK_FROZEN_SAMPLES 50U
 
 /* Samples that still see the state of the sensor's low-pass filter before the start. */
 #define HK_SETTLE_SAMPLES 3U

@@ -5,6 +5,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hk_virtual_mpu6050.h"
+
+/* A planned fault: see hk_virtual_mpu6050_plan. */
+typedef struct {
+    uint32_t kind;
+    uint32_t row;
+    uint32_t amount;
+} hk_host_fault_t;
+
 typedef struct {
     const double *rows;
     uint32_t row_count;
@@ -14,11 +23,14 @@ typedef struct {
     uint32_t nack;
     uint32_t hold_sda;
     uint32_t fault_row; /* nack and hold_sda begin when so many rows have been played */
+    hk_host_fault_t faults[HK_PLANNED_FAULTS];
+    uint32_t fault_count;
 } hk_host_options_t;
 
 typedef struct {
     uint32_t rows_played;
     uint32_t unread_samples;
+    uint32_t struck; /* planned faults that have come */
     bool stalled; /* no row was taken for a long time, so the run was ended */
     double time_s;
 } hk_host_statistics_t;

@@ -21,10 +21,12 @@
 static const char usage[] =
     "use: firmware TABLE [--settle N] [--realtime] [--statistics FILE]\n"
     "              [--who-am-i N] [--nack N] [--hold-sda CLOCKS] [--fault-row N]\n"
+    "              [--fault KIND:ROW:AMOUNT]...\n"
     "--settle      samples that the driver drops before the first row (default 0)\n"
     "--realtime    keep pace with the wall clock and loop the table until SIGTERM\n"
     "--statistics  write one line of JSON there at the end\n"
-    "--who-am-i, --nack, --hold-sda: faults of the sensor; --fault-row: from which row on\n";
+    "--who-am-i, --nack, --hold-sda: faults of the sensor; --fault-row: from which row on\n"
+    "--fault       plan a fault: see hk_fault_kind_t; numbers, KIND from 0\n";
 
 static void fail(const char *what, const char *detail)
 {
@@ -46,6 +48,24 @@ static uint32_t number(const char *option, const char *text)
         fail(option, "needs a number from 0 to 4294967295");
     }
     return (uint32_t)value;
+}
+
+static void add_fault(const char *text, hk_host_options_t *options)
+{
+    hk_host_fault_t *fault = &options->faults[options->fault_count];
+    unsigned long kind;
+    unsigned long row;
+    unsigned long amount;
+
+    if (text == NULL || sscanf(text, "%lu:%lu:%lu", &kind, &row, &amount) != 3
+        || kind >= HK_FAULT_KINDS || options->fault_count == HK_PLANNED_FAULTS) {
+        fail("--fault", "needs KIND:ROW:AMOUNT, of a kind that exists, and not too often");
+        return;
+    }
+    fault->kind = (uint32_t)kind;
+    fault->row = (uint32_t)row;
+    fault->amount = (uint32_t)amount;
+    options->fault_count++;
 }
 
 static long file_size(FILE *file)
@@ -108,6 +128,8 @@ static const char *parse(int argc, char **argv, hk_host_options_t *options,
             options->nack = number(option, value);
         } else if (strcmp(option, "--hold-sda") == 0) {
             options->hold_sda = number(option, value);
+        } else if (strcmp(option, "--fault") == 0) {
+            add_fault(value, options);
         } else if (strcmp(option, "--fault-row") == 0) {
             options->fault_row = number(option, value);
         } else {
@@ -133,7 +155,7 @@ static void write_statistics(const char *path)
     }
     (void)fprintf(file, "{\"rows_played\": %lu, \"unread_samples\": %lu, \"stalled\": %d, ",
                   (unsigned long)s.rows_played, (unsigned long)s.unread_samples, s.stalled ? 1 : 0);
-    (void)fprintf(file, "\"time_s\": %.6f}\n", s.time_s);
+    (void)fprintf(file, "\"struck\": %lu, \"time_s\": %.6f}\n", (unsigned long)s.struck, s.time_s);
     (void)fclose(file);
 }
 

@@ -20,8 +20,8 @@ package hk_complementary_pkg is
   -- The axis whose tilt is measured first.
   function first_axis return axis_t;
 
-  -- A count as the CORDIC takes it.
-  function with_guard_bits (count : signed(16 downto 0)) return signed;
+  -- The size of a count as the arc tangent takes it.
+  function with_guard_bits (count : signed(16 downto 0)) return unsigned;
 
   -- What is left of 1 g beside a component, from the square of the component.
   function rest_of_square (square : signed(49 downto 0)) return unsigned;
@@ -41,16 +41,16 @@ package body hk_complementary_pkg is
 
   function first_axis return axis_t is
   begin
-    -- The arc tangent of pitch needs the magnitude that the one of roll leaves.
+    -- The arc tangent of pitch needs the length that the one of roll leaves.
     if uses_arcsin_c and not has_roll_c then
       return pitch;
     end if;
     return roll;
   end function first_axis;
 
-  function with_guard_bits (count : signed(16 downto 0)) return signed is
+  function with_guard_bits (count : signed(16 downto 0)) return unsigned is
   begin
-    return shift_left(resize(count, 32), cordic_guard_bits_c);
+    return shift_left(resize(size_of(count), 30), guard_bits_c);
   end function with_guard_bits;
 
   function rest_of_square (square : signed(49 downto 0)) return unsigned is

@@ -40,14 +40,51 @@ typedef struct {
 typedef struct {
     bool open;
     bool pointer_expected;
+    bool gone;          /* the sensor has let go of the bus until the next START */
+    uint8_t bytes_read; /* in this transaction */
     uint8_t pointer;
 } hk_slave_t;
 
+/* What can be made to go wrong, each with an amount. */
+typedef enum {
+    HK_FAULT_NACK_ADDRESS,    /* so many addressings are not acknowledged */
+    HK_FAULT_NACK_DATA,       /* so many written bytes are not acknowledged */
+    HK_FAULT_TORN_BURST,      /* the next read that is longer than so many bytes breaks off there */
+    HK_FAULT_STUCK_SDA,       /* SDA stays low until so many clocks have come */
+    HK_FAULT_CLOCK_STRETCH,   /* SCL stays low for so many microseconds within the next byte */
+    HK_FAULT_WRONG_IDENTITY,  /* WHO_AM_I reads so */
+    HK_FAULT_REGISTER_UPSET,  /* register (amount / 256) is exclusive-ored with (amount % 256) */
+    HK_FAULT_SELF_RESET,      /* the supply dips: reset; the amount is not used */
+    HK_FAULT_FROZEN_DATA,     /* the data registers keep their values until a reset; not used */
+    HK_FAULT_LOST_DATA_READY, /* so many samples are announced in INT_STATUS, but not on the pin */
+    HK_FAULT_KINDS
+} hk_fault_kind_t;
+
+/* A fault that strikes when a row of the table is sampled. */
+typedef struct {
+    hk_fault_kind_t kind;
+    uint32_t row;
+    uint32_t amount;
+    bool struck;
+} hk_planned_fault_t;
+
+#define HK_PLANNED_FAULTS 16
+
 /* Faults on demand, and what went wrong on its own. */
 typedef struct {
-    uint32_t nack_left;      /* so many addressings are not acknowledged */
-    uint32_t sda_stuck_left; /* SDA stays low until so many clocks have come */
+    hk_planned_fault_t planned[HK_PLANNED_FAULTS];
+    uint32_t planned_count;
+    uint32_t nack_left;       /* so many addressings are not acknowledged */
+    uint32_t nack_data_left;  /* so many written bytes are not acknowledged */
+    uint32_t sda_stuck_left;  /* SDA stays low until so many clocks have come */
+    uint32_t stretch_us;      /* SCL will stay low for so long within the next byte */
+    uint64_t scl_free_ns;     /* SCL is low until then */
+    uint32_t lost_ready_left; /* so many samples will not be seen on the pin */
+    uint32_t torn_after;      /* bytes of the read that breaks off */
+    bool torn;
+    bool frozen;
     uint8_t who_am_i;        /* the identity the sensor answers with */
+    uint8_t self_test[4];    /* factory codes: registers SELF_TEST_X to SELF_TEST_A */
     uint32_t unread_samples; /* samples that were replaced before anybody read them */
 } hk_faults_t;
 
@@ -80,6 +117,22 @@ void hk_virtual_mpu6050_init(hk_virtual_mpu6050_t *sensor, const double *rows, u
 void hk_virtual_mpu6050_set_identity(hk_virtual_mpu6050_t *sensor, uint8_t who_am_i);
 void hk_virtual_mpu6050_nack_next(hk_virtual_mpu6050_t *sensor, uint32_t addressings);
 void hk_virtual_mpu6050_hold_sda(hk_virtual_mpu6050_t *sensor, uint32_t clocks);
+
+/* Plan a fault for the sampling of a row, or for now: what concerns only the bus or the identity
+ * strikes at once if the row is 0. False if there are too many, or if there is no such kind. */
+bool hk_virtual_mpu6050_plan(hk_virtual_mpu6050_t *sensor, uint32_t kind, uint32_t row,
+                             uint32_t amount);
+
+/* Faults that have struck so far. */
+uint32_t hk_virtual_mpu6050_struck(const hk_virtual_mpu6050_t *sensor);
+
+/* Factory codes of the self-test, as the registers SELF_TEST_X to SELF_TEST_A hold them; init sets
+ * 0, which means none. */
+void hk_virtual_mpu6050_set_self_test(hk_virtual_mpu6050_t *sensor, uint8_t x, uint8_t y, uint8_t z,
+                                      uint8_t a);
+
+/* How long SCL stays low from now on; the master asks before each byte. */
+uint64_t hk_virtual_mpu6050_stretch_ns(hk_virtual_mpu6050_t *sensor);
 
 /* Let time pass. Every other call acts at the time of the last advance. */
 void hk_virtual_mpu6050_advance(hk_virtual_mpu6050_t *sensor, uint64_t now_ns);

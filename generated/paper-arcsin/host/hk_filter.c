@@ -1,8 +1,10 @@
 /* made by hostkit 0.1.0 from design 975f50245cf2; do not edit; template complementary/hk_filter.c.j2 */
 #include "hk_filter.h"
 
-#include "hk_cordic.h"
+#include "hk_arctan.h"
 #include "hk_fixed.h"
+
+#include <stddef.h>
 
 /* Body axes from sensor axes; a count is widened first, because -(-32768) is no int16_t. */
 #define HK_BODY_X(count) ((int32_t)(count)[0])

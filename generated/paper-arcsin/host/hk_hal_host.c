@@ -24,6 +24,7 @@ static struct {
     uint64_t progress_ns; /* when the last row was taken */
     uint32_t progress_row;
     bool faults_armed;
+    bool idled; /* since the main loop began its turn */
     bool ended;
     bool stalled;
     struct timespec start;
@@ -79,18 +80,40 @@ static void sleep_until_now(void)
 
 void hk_host_board_init(const hk_host_options_t *options)
 {
+    uint32_t i;
+
     board.options = *options;
     hk_virtual_mpu6050_init(&board.sensor, options->rows, options->row_count, options->settle,
                             options->realtime);
     if (options->who_am_i >= 0) {
         hk_virtual_mpu6050_set_identity(&board.sensor, (uint8_t)options->who_am_i);
     }
+    for (i = 0U; i < options->fault_count; i++) {
+        const hk_host_fault_t *fault = &options->faults[i];
+
+        (void)hk_virtual_mpu6050_plan(&board.sensor, fault->kind, fault->row, fault->amount);
+    }
     (void)clock_gettime(CLOCK_MONOTONIC, &board.start);
     arm_faults();
 }
 
+/* A turn of the main loop in which the firmware did not sleep takes its time too. */
+static void end_turn(void)
+{
+    if (!board.idled) {
+        arm_faults();
+        watch_progress();
+        pass(HK_POLL_NS);
+        if (board.options.realtime) {
+            sleep_until_now();
+        }
+    }
+    board.idled = false;
+}
+
 bool hk_host_board_finished(void)
 {
+    end_turn();
     return board.ended || stop_requested != 0;
 }
 
@@ -104,6 +127,7 @@ hk_host_statistics_t hk_host_board_statistics(void)
     const hk_host_statistics_t statistics = {
         .rows_played = hk_virtual_mpu6050_rows_played(&board.sensor),
         .unread_samples = hk_virtual_mpu6050_unread_samples(&board.sensor),
+        .struck = hk_virtual_mpu6050_struck(&board.sensor),
         .stalled = board.stalled,
         .time_s = (double)board.now_ns / (double)HK_NS_PER_S,
     };
@@ -115,6 +139,15 @@ void hk_hal_init(void)
 {
 }
 
+/* Let the time of some bits pass; false if the sensor holds the clock for too long. */
+static bool bits(uint64_t count)
+{
+    const uint64_t held_ns = hk_virtual_mpu6050_stretch_ns(&board.sensor);
+
+    pass(held_ns > HK_TIMEOUT_NS ? HK_TIMEOUT_NS : held_ns + count * HK_BIT_NS);
+    return held_ns <= HK_TIMEOUT_NS;
+}
+
 /* Address the sensor: a START takes one bit time, a byte nine. */
 static bool address_sensor(uint8_t address, bool read)
 {
@@ -122,14 +155,12 @@ static bool address_sensor(uint8_t address, bool read)
         pass(HK_TIMEOUT_NS); /* no START is possible */
         return false;
     }
-    pass(10U * HK_BIT_NS);
-    return hk_virtual_mpu6050_start(&board.sensor, address, read);
+    return bits(10U) && hk_virtual_mpu6050_start(&board.sensor, address, read);
 }
 
 static bool write_byte(uint8_t byte)
 {
-    pass(9U * HK_BIT_NS);
-    return hk_virtual_mpu6050_write(&board.sensor, byte);
+    return bits(9U) && hk_virtual_mpu6050_write(&board.sensor, byte);
 }
 
 static bool release(bool good)
@@ -156,8 +187,8 @@ bool hk_hal_i2c_read(uint8_t address, uint8_t reg, uint8_t *bytes, uint8_t count
     uint8_t i;
 
     for (i = 0U; good && i < count; i++) {
-        pass(9U * HK_BIT_NS);
-        bytes[i] = hk_virtual_mpu6050_read(&board.sensor);
+        good = bits(9U);
+        bytes[i] = good ? hk_virtual_mpu6050_read(&board.sensor) : 0U;
     }
     return release(good);
 }
@@ -188,7 +219,7 @@ bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
 {
     uint8_t done = 0U;
 
-    while (done < count && !hk_host_board_finished()) {
+    while (done < count && !board.ended && stop_requested == 0) {
         const ssize_t written = write(STDOUT_FILENO, &bytes[done], (size_t)(count - done));
 
         if (written > 0) {
@@ -204,6 +235,7 @@ void hk_hal_idle(void)
 {
     uint64_t until = hk_virtual_mpu6050_next_event_ns(&board.sensor);
 
+    board.idled = true;
     arm_faults();
     watch_progress();
     if (hk_virtual_mpu6050_int_pin(&board.sensor)) {

@@ -25,6 +25,8 @@
 #define HK_PIN_ANY_READ       0x10U
 #define HK_PWR_CLOCK          0x07U
 #define HK_PWR_NO_SAMPLES     0x60U /* sleep, and cycle mode, which is not modelled */
+#define HK_SELF_TEST_GYRO     0x1FU /* of a register with both codes */
+#define HK_SELF_TEST_X_ON     0x80
 #define HK_USER_RESET_BITS    0x07U
 #define HK_FIFO_DATA_REGISTER 0x74U
 #define HK_GYRO_UNDEFINED     0x55U /* both bytes of a gyroscope count while the PLL settles */
@@ -129,6 +131,42 @@ static void restart_sampling(hk_virtual_mpu6050_t *sensor, uint64_t delay_ns)
                                        : sensor->now_ns + delay_ns + sample_period_ns(sensor);
 }
 
+/* Factory trim of a self-test code in counts, 0 for a code of 0: counts * growth^(code - 1). */
+static double trim(uint8_t code, double counts, double growth)
+{
+    double found = code == 0U ? 0.0 : counts;
+
+    for (; code > 1U; code--) {
+        found *= growth;
+    }
+    return found;
+}
+
+/* What the self-test adds to a count, as far as an axis has it switched on. */
+static double gyro_response(const hk_virtual_mpu6050_t *sensor, int axis, uint8_t setting)
+{
+    const uint8_t code = sensor->reg[HK_REG_SELF_TEST_X + axis] & HK_SELF_TEST_GYRO;
+    const double found = trim(code, HK_SELF_TEST_GYRO_COUNTS, HK_SELF_TEST_GYRO_GROWTH)
+                         / (double)(1U << setting);
+
+    if (((sensor->reg[HK_REG_GYRO_CONFIG] << axis) & HK_SELF_TEST_X_ON) == 0) {
+        return 0.0;
+    }
+    return axis == 1 ? -found : found;
+}
+
+static double accel_response(const hk_virtual_mpu6050_t *sensor, int axis, uint8_t setting)
+{
+    const uint8_t high = sensor->reg[HK_REG_SELF_TEST_X + axis] >> 5;
+    const uint8_t low = (sensor->reg[HK_REG_SELF_TEST_A] >> (4 - 2 * axis)) & 0x03U;
+
+    if (((sensor->reg[HK_REG_ACCEL_CONFIG] << axis) & HK_SELF_TEST_X_ON) == 0) {
+        return 0.0;
+    }
+    return trim((uint8_t)(high << 2 | low), HK_SELF_TEST_ACCEL_COUNTS, HK_SELF_TEST_ACCEL_GROWTH)
+           * (double)(1U << HK_SELF_TEST_ACCEL_SETTING) / (double)(1U << setting);
+}
+
 static void quantise(const hk_virtual_mpu6050_t *sensor, const double *row, uint8_t *burst)
 {
     const uint8_t gyro = (sensor->reg[HK_REG_GYRO_CONFIG] >> HK_RANGE_SHIFT) & HK_RANGE_MASK;
@@ -137,8 +175,10 @@ static void quantise(const hk_virtual_mpu6050_t *sensor, const double *row, uint
     int axis;
 
     for (axis = 0; axis < 3; axis++) {
-        put_big_endian(&burst[2 * axis], to_count(row[3 + axis] * accel_counts_per_m_s2(accel)));
-        put_big_endian(&burst[8 + 2 * axis], to_count(row[axis] * gyro_counts_per_rad_s(gyro)));
+        put_big_endian(&burst[2 * axis], to_count(row[3 + axis] * accel_counts_per_m_s2(accel)
+                                                  + accel_response(sensor, axis, accel)));
+        put_big_endian(&burst[8 + 2 * axis], to_count(row[axis] * gyro_counts_per_rad_s(gyro)
+                                                      + gyro_response(sensor, axis, gyro)));
         if (!settled) {
             burst[8 + 2 * axis] = HK_GYRO_UNDEFINED;
             burst[9 + 2 * axis] = HK_GYRO_UNDEFINED;
@@ -153,7 +193,7 @@ static void publish(hk_virtual_mpu6050_t *sensor)
 {
     int i;
 
-    for (i = 0; i < HK_MPU6050_BURST_BYTES; i++) {
+    for (i = 0; i < HK_MPU6050_BURST_BYTES && !sensor->faults.frozen; i++) {
         sensor->reg[HK_REG_ACCEL_XOUT_H + i] = sensor->pending[i];
     }
     sensor->pending_full = false;
@@ -165,6 +205,10 @@ static void publish(hk_virtual_mpu6050_t *sensor)
         sensor->faults.unread_samples++;
     }
     sensor->reg[HK_REG_INT_STATUS] |= HK_INT_DATA_READY;
+    if (sensor->faults.lost_ready_left > 0U) {
+        sensor->faults.lost_ready_left--;
+        return;
+    }
     sensor->latch = true;
     if ((sensor->reg[HK_REG_INT_PIN_CFG] & HK_PIN_LATCH) == 0U) {
         sensor->pulse_end_ns = sensor->now_ns + HK_PULSE_NS;
@@ -196,10 +240,17 @@ static const double *take_row(hk_virtual_mpu6050_t *sensor)
     return row;
 }
 
+static void strike_due(hk_virtual_mpu6050_t *sensor);
+
 static void take_sample(hk_virtual_mpu6050_t *sensor)
 {
-    const double *row = take_row(sensor);
+    const double *row;
 
+    strike_due(sensor);
+    if (sensor->sample_ns != sensor->now_ns) {
+        return; /* a fault has stopped the sampling, or changed its rate */
+    }
+    row = take_row(sensor);
     if (row == 0) {
         sensor->sample_ns = HK_NEVER;
         return;
@@ -234,7 +285,11 @@ static void load_reset_values(hk_virtual_mpu6050_t *sensor)
     for (address = 0U; address < HK_VIRTUAL_REGISTERS; address++) {
         sensor->reg[address] = reset_value(address);
     }
+    for (address = 0U; address < sizeof sensor->faults.self_test; address++) {
+        sensor->reg[HK_REG_SELF_TEST_X + address] = sensor->faults.self_test[address];
+    }
     sensor->reg[HK_REG_WHO_AM_I] = sensor->faults.who_am_i;
+    sensor->faults.frozen = false;
     sensor->pending_full = false;
     sensor->pending_ready = false;
     sensor->latch = false;
@@ -300,6 +355,20 @@ static void set_rate_register(hk_virtual_mpu6050_t *sensor, uint8_t address, uin
     }
 }
 
+/* Whether the part that answers so has a low-pass register for its accelerometer. */
+static bool own_accel_filter(uint8_t who_am_i)
+{
+#define HK_CASE(value, part, accepted, warned, has_own_accel_filter) \
+    case value: \
+        return has_own_accel_filter;
+    switch (who_am_i) {
+        HK_MPU6050_IDENTITIES(HK_CASE)
+    default:
+        return false;
+    }
+#undef HK_CASE
+}
+
 /* Writes to registers that cannot be written, or that are not modelled, are ignored. */
 static void write_register(hk_virtual_mpu6050_t *sensor, uint8_t address, uint8_t value)
 {
@@ -329,7 +398,16 @@ static void write_register(hk_virtual_mpu6050_t *sensor, uint8_t address, uint8_
     case HK_REG_ACCEL_CONFIG:
     case HK_REG_FIFO_EN:
     case HK_REG_PWR_MGMT_2:
+    case HK_REG_SELF_TEST_X:
+    case HK_REG_SELF_TEST_Y:
+    case HK_REG_SELF_TEST_Z:
+    case HK_REG_SELF_TEST_A:
         sensor->reg[address] = value;
+        break;
+    case HK_REG_ACCEL_CONFIG_2:
+        if (own_accel_filter(sensor->faults.who_am_i)) {
+            sensor->reg[address] = value;
+        }
         break;
     default:
         break;
@@ -353,6 +431,9 @@ uint32_t hk_virtual_mpu6050_size(void)
 void hk_virtual_mpu6050_init(hk_virtual_mpu6050_t *sensor, const double *rows, uint32_t row_count,
                              uint32_t settle, bool loop)
 {
+    uint8_t *faults = (uint8_t *)&sensor->faults;
+    uint32_t i;
+
     sensor->now_ns = 0U;
     sensor->published_ns = 0U;
     sensor->reset_start_ns = 0U;
@@ -361,6 +442,8 @@ void hk_virtual_mpu6050_init(hk_virtual_mpu6050_t *sensor, const double *rows, u
     sensor->slave.open = false;
     sensor->slave.pointer_expected = false;
     sensor->slave.pointer = 0U;
+    sensor->slave.gone = false;
+    sensor->slave.bytes_read = 0U;
     sensor->replay.rows = rows;
     sensor->replay.row_count = row_count;
     sensor->replay.settle = settle;
@@ -369,10 +452,10 @@ void hk_virtual_mpu6050_init(hk_virtual_mpu6050_t *sensor, const double *rows, u
     sensor->replay.rows_played = 0U;
     sensor->replay.lead_in_left = 0U;
     sensor->replay.running = false;
-    sensor->faults.nack_left = 0U;
-    sensor->faults.sda_stuck_left = 0U;
+    for (i = 0U; i < sizeof sensor->faults; i++) {
+        faults[i] = 0U; /* an assignment would ask for a C library */
+    }
     sensor->faults.who_am_i = HK_MPU6050_ID;
-    sensor->faults.unread_samples = 0U;
     load_reset_values(sensor);
 }
 
@@ -390,6 +473,115 @@ void hk_virtual_mpu6050_nack_next(hk_virtual_mpu6050_t *sensor, uint32_t address
 void hk_virtual_mpu6050_hold_sda(hk_virtual_mpu6050_t *sensor, uint32_t clocks)
 {
     sensor->faults.sda_stuck_left = clocks;
+}
+
+void hk_virtual_mpu6050_set_self_test(hk_virtual_mpu6050_t *sensor, uint8_t x, uint8_t y, uint8_t z,
+                                      uint8_t a)
+{
+    const uint8_t codes[4] = {x, y, z, a};
+    int i;
+
+    for (i = 0; i < 4; i++) {
+        sensor->faults.self_test[i] = codes[i];
+        sensor->reg[HK_REG_SELF_TEST_X + i] = codes[i];
+    }
+}
+
+/* One bit, or several, of a register turn over, with all that a write would bring about. */
+static void upset(hk_virtual_mpu6050_t *sensor, uint32_t amount)
+{
+    const uint8_t address = (uint8_t)(amount / 256U % HK_VIRTUAL_REGISTERS);
+
+    write_register(sensor, address, (uint8_t)(sensor->reg[address] ^ (amount & 0xFFU)));
+}
+
+static void strike(hk_virtual_mpu6050_t *sensor, hk_fault_kind_t kind, uint32_t amount)
+{
+    switch (kind) {
+    case HK_FAULT_NACK_ADDRESS:
+        sensor->faults.nack_left = amount;
+        break;
+    case HK_FAULT_NACK_DATA:
+        sensor->faults.nack_data_left = amount;
+        break;
+    case HK_FAULT_TORN_BURST:
+        sensor->faults.torn = true;
+        sensor->faults.torn_after = amount;
+        break;
+    case HK_FAULT_STUCK_SDA:
+        sensor->faults.sda_stuck_left = amount;
+        break;
+    case HK_FAULT_CLOCK_STRETCH:
+        sensor->faults.stretch_us = amount;
+        break;
+    case HK_FAULT_WRONG_IDENTITY:
+        hk_virtual_mpu6050_set_identity(sensor, (uint8_t)amount);
+        break;
+    case HK_FAULT_REGISTER_UPSET:
+        upset(sensor, amount);
+        break;
+    case HK_FAULT_SELF_RESET:
+        begin_reset(sensor);
+        break;
+    case HK_FAULT_FROZEN_DATA:
+        sensor->faults.frozen = true;
+        break;
+    case HK_FAULT_LOST_DATA_READY:
+        sensor->faults.lost_ready_left = amount;
+        break;
+    case HK_FAULT_KINDS:
+        break;
+    }
+}
+
+/* Strike with what is planned for the row that is about to be sampled. */
+static void strike_due(hk_virtual_mpu6050_t *sensor)
+{
+    uint32_t i;
+
+    if (!sensor->replay.running || sensor->replay.lead_in_left > 0U) {
+        return;
+    }
+    for (i = 0U; i < sensor->faults.planned_count; i++) {
+        hk_planned_fault_t *fault = &sensor->faults.planned[i];
+
+        if (!fault->struck && sensor->replay.rows_played >= fault->row) {
+            fault->struck = true;
+            strike(sensor, fault->kind, fault->amount);
+        }
+    }
+}
+
+bool hk_virtual_mpu6050_plan(hk_virtual_mpu6050_t *sensor, uint32_t kind, uint32_t row,
+                             uint32_t amount)
+{
+    hk_planned_fault_t *fault = &sensor->faults.planned[sensor->faults.planned_count];
+    const bool at_once = row == 0U && kind != (uint32_t)HK_FAULT_TORN_BURST
+                         && kind <= (uint32_t)HK_FAULT_WRONG_IDENTITY;
+
+    if (sensor->faults.planned_count == HK_PLANNED_FAULTS || kind >= (uint32_t)HK_FAULT_KINDS) {
+        return false;
+    }
+    sensor->faults.planned_count++;
+    fault->kind = (hk_fault_kind_t)kind;
+    fault->row = row;
+    fault->amount = amount;
+    fault->struck = at_once;
+    if (at_once) {
+        strike(sensor, fault->kind, amount);
+    }
+    return true;
+}
+
+uint32_t hk_virtual_mpu6050_struck(const hk_virtual_mpu6050_t *sensor)
+{
+    uint32_t struck = 0U;
+    uint32_t i;
+
+    for (i = 0U; i < sensor->faults.planned_count; i++) {
+        struck += sensor->faults.planned[i].struck ? 1U : 0U;
+    }
+    return struck;
 }
 
 /* --- Time ----------------------------------------------------------------------------------- */
@@ -448,6 +640,8 @@ bool hk_virtual_mpu6050_start(hk_virtual_mpu6050_t *sensor, uint8_t address, boo
         return false;
     }
     sensor->slave.open = true;
+    sensor->slave.gone = false;
+    sensor->slave.bytes_read = 0U;
     sensor->slave.pointer_expected = !read;
     return true;
 }
@@ -455,6 +649,11 @@ bool hk_virtual_mpu6050_start(hk_virtual_mpu6050_t *sensor, uint8_t address, boo
 bool hk_virtual_mpu6050_write(hk_virtual_mpu6050_t *sensor, uint8_t byte)
 {
     if (!sensor->slave.open) {
+        return false;
+    }
+    if (sensor->faults.nack_data_left > 0U) {
+        sensor->faults.nack_data_left--;
+        hk_virtual_mpu6050_stop(sensor);
         return false;
     }
     if (sensor->slave.pointer_expected) {
@@ -474,9 +673,14 @@ uint8_t hk_virtual_mpu6050_read(hk_virtual_mpu6050_t *sensor)
     const uint8_t address = sensor->slave.pointer;
     uint8_t value;
 
-    if (!sensor->slave.open) {
+    if (sensor->faults.torn && sensor->slave.bytes_read >= sensor->faults.torn_after) {
+        sensor->faults.torn = false;
+        sensor->slave.gone = true;
+    }
+    if (!sensor->slave.open || sensor->slave.gone) {
         return 0xFFU;
     }
+    sensor->slave.bytes_read++;
     value = sensor->reg[address];
     if (address == HK_REG_INT_STATUS
         || (sensor->reg[HK_REG_INT_PIN_CFG] & HK_PIN_ANY_READ) != 0U) {
@@ -493,6 +697,17 @@ void hk_virtual_mpu6050_stop(hk_virtual_mpu6050_t *sensor)
     if (sensor->pending_full) {
         publish(sensor);
     }
+}
+
+uint64_t hk_virtual_mpu6050_stretch_ns(hk_virtual_mpu6050_t *sensor)
+{
+    if (sensor->faults.stretch_us > 0U) {
+        sensor->faults.scl_free_ns = sensor->now_ns + (uint64_t)sensor->faults.stretch_us * 1000U;
+        sensor->faults.stretch_us = 0U;
+    }
+    return sensor->faults.scl_free_ns > sensor->now_ns
+               ? sensor->faults.scl_free_ns - sensor->now_ns
+               : 0U;
 }
 
 void hk_virtual_mpu6050_clock(hk_virtual_mpu6050_t *sensor)

@@ -35,14 +35,14 @@ end entity hk_complementary;
 
 architecture rtl of hk_complementary is
 
-  constant gain_shift_c : positive := cordic_gain_fraction_bits_c - cordic_guard_bits_c;
-  constant root_shift_c : natural  := cordic_guard_bits_c - root_fraction_bits_c;
+  constant root_shift_c    : natural  := guard_bits_c - root_fraction_bits_c;
+  constant stretch_shift_c : positive := stretch_fraction_bits_c - guard_bits_c;
 
   -- In order, one clock each but for idle, the waits and finished.
   type state_t is (
     idle,
     force_roll,     -- roll: start the arc tangent, or square the component
-    force_pitch,    -- pitch: put the CORDIC gain on the component, or square it
+    force_pitch,    -- pitch: square the component, for the arc sine
     rate_roll,      -- multiply the roll rate by its gain
     rate_pitch,
     predict_roll,
@@ -74,14 +74,17 @@ architecture rtl of hk_complementary is
   signal radicand_r   : unsigned(2 * root_integers_c - 1 downto 0);
   signal root         : unsigned(root_integers_c + root_fraction_bits_c - 1 downto 0);
 
-  signal cordic_start_r : std_logic;
-  signal cordic_free    : std_logic;
-  signal cordic_done    : std_logic;
-  signal cordic_taken   : std_logic;
-  signal cordic_x_r     : signed(31 downto 0);
-  signal cordic_y_r     : signed(31 downto 0);
+  signal arctan_start_r : std_logic;
+  signal arctan_free    : std_logic;
+  signal arctan_done    : std_logic;
+  signal arctan_taken   : std_logic;
+  signal x_r            : unsigned(29 downto 0);
+  signal y_r            : unsigned(29 downto 0);
+  signal x_negative_r   : std_logic;
+  signal y_negative_r   : std_logic;
   signal force_angle    : signed(31 downto 0);
-  signal magnitude      : signed(31 downto 0);
+  signal length         : unsigned(29 downto 0);
+  signal stretch        : signed(17 downto 0);
 
   function first_wait return state_t is
   begin
@@ -106,7 +109,7 @@ begin
   design_digest(23 downto 0)  <= design_digest_c(23 downto 0);
 
   root_taken   <= '1' when state_r = wait_root else '0';
-  cordic_taken <= '1' when state_r = wait_angle else '0';
+  arctan_taken <= '1' when state_r = wait_angle else '0';
 
   main : process (clk)
     variable axis_v      : axis_t;
@@ -115,7 +118,6 @@ begin
     variable force_v     : force_t;        -- sensor axes; the next to be squared is the first
     variable rate_v      : count_array_t;
     variable predicted_v : angle_array_t;
-    variable opposite_v  : signed(31 downto 0);  -- pitch component times the CORDIC gain
     variable radicand_v  : unsigned(2 * root_integers_c - 1 downto 0);
     variable clocks_v    : unsigned(2 downto 0);   -- in the state of the squares
     variable square_v    : unsigned(31 downto 0);  -- of the specific force: at most 3 * 2**30
@@ -127,8 +129,8 @@ begin
       if root_free = '1' then
         root_start_r <= '0';
       end if;
-      if cordic_free = '1' then
-        cordic_start_r <= '0';
+      if arctan_free = '1' then
+        arctan_start_r <= '0';
       end if;
 
       if state_r = idle then
@@ -151,9 +153,11 @@ begin
           coefficient_r      <= resize(component_v(roll), 18);
           multiply_r         <= '1';
         else
-          cordic_x_r     <= with_guard_bits(force_z_v);
-          cordic_y_r     <= with_guard_bits(component_v(roll));
-          cordic_start_r <= '1';
+          x_r            <= with_guard_bits(force_z_v);
+          y_r            <= with_guard_bits(component_v(roll));
+          x_negative_r   <= force_z_v(16);
+          y_negative_r   <= component_v(roll)(16);
+          arctan_start_r <= '1';
         end if;
         if has_integral_c then
           predicted_v(roll)  := without_bias(angle_r(roll), bias_r(roll));
@@ -162,14 +166,10 @@ begin
         state_r <= force_pitch;
 
       elsif state_r = force_pitch then
-        factor_r <= resize(component_v(pitch), 32);
-        if uses_arcsin_c then
-          coefficient_r <= resize(component_v(pitch), 18);
-        else
-          coefficient_r <= cordic_gain_c;
-        end if;
-        multiply_r <= '1';
-        state_r    <= rate_roll;
+        factor_r      <= resize(component_v(pitch), 32);
+        coefficient_r <= resize(component_v(pitch), 18);
+        multiply_r    <= '1';
+        state_r       <= rate_roll;
 
       elsif state_r = rate_roll then
         if uses_arcsin_c and has_roll_c then
@@ -182,7 +182,6 @@ begin
         state_r       <= rate_pitch;
 
       elsif state_r = rate_pitch then
-        opposite_v := shift_rounded(product, gain_shift_c);
         radicand_v := rest_of_square(product);
         if uses_arcsin_c and not has_roll_c then
           radicand_r   <= radicand_v;
@@ -228,9 +227,11 @@ begin
 
       elsif state_r = wait_root then
         if root_done = '1' then
-          cordic_x_r     <= shift_left(signed(resize(root, 32)), root_shift_c);
-          cordic_y_r     <= with_guard_bits(component_v(axis_v));
-          cordic_start_r <= '1';
+          x_r            <= shift_left(resize(root, 30), root_shift_c);
+          y_r            <= with_guard_bits(component_v(axis_v));
+          x_negative_r   <= '0';
+          y_negative_r   <= component_v(axis_v)(16);
+          arctan_start_r <= '1';
           if axis_v = roll and has_pitch_c then
             radicand_r   <= radicand_v;
             root_start_r <= '1';
@@ -239,11 +240,20 @@ begin
         end if;
 
       elsif state_r = wait_angle then
-        if cordic_done = '1' then
+        -- The stretch is there many clocks before the angle: its product is, too.
+        if axis_v = roll and has_pitch_c and not uses_arcsin_c then
+          factor_r      <= signed(resize(size_of(component_v(pitch)), 32));
+          coefficient_r <= stretch;
+          multiply_r    <= '1';
+        end if;
+        if arctan_done = '1' then
           if axis_v = roll and has_pitch_c and not uses_arcsin_c then
-            cordic_x_r     <= magnitude;
-            cordic_y_r     <= opposite_v;
-            cordic_start_r <= '1';
+            x_r            <= length;
+            y_r            <= with_guard_bits(component_v(pitch))
+                              + unsigned(product(stretch_shift_c + 29 downto stretch_shift_c));
+            x_negative_r   <= '0';
+            y_negative_r   <= component_v(pitch)(16);
+            arctan_start_r <= '1';
           end if;
           tilt_v     := force_angle - tilt_offset_c(axis_v);
           factor_r   <= tilt_v - predicted_v(axis_v);
@@ -310,7 +320,7 @@ begin
         restarted_r    <= '0';
         multiply_r     <= '0';
         root_start_r   <= '0';
-        cordic_start_r <= '0';
+        arctan_start_r <= '0';
         state_r        <= idle;
       end if;
     end if;
@@ -325,18 +335,21 @@ begin
       product     => product
     );
 
-  cordic : entity work.hk_cordic
+  arctan : entity work.hk_arctan
     port map (
-      clk       => clk,
-      rst       => rst,
-      in_valid  => cordic_start_r,
-      in_ready  => cordic_free,
-      x         => cordic_x_r,
-      y         => cordic_y_r,
-      out_valid => cordic_done,
-      out_ready => cordic_taken,
-      angle     => force_angle,
-      magnitude => magnitude
+      clk        => clk,
+      rst        => rst,
+      in_valid   => arctan_start_r,
+      in_ready   => arctan_free,
+      x          => x_r,
+      y          => y_r,
+      x_negative => x_negative_r,
+      y_negative => y_negative_r,
+      out_valid  => arctan_done,
+      out_ready  => arctan_taken,
+      angle      => force_angle,
+      length     => length,
+      stretch    => stretch
     );
 
   with_root : if uses_arcsin_c generate

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hk_mpu6050_regs.h"
+
 typedef enum {
     HK_MPU6050_IDENTIFY,  /* read WHO_AM_I */
     HK_MPU6050_RESET,     /* write DEVICE_RESET */
@@ -26,8 +28,23 @@ typedef enum {
     HK_MPU6050_REFUSAL
 } hk_mpu6050_event_t;
 
+/* What can go wrong. Every kind has a counter and a text of its own. */
+typedef enum {
+    HK_MPU6050_TRANSFER,   /* a transfer failed: no acknowledge, time limit, or a bus held low */
+    HK_MPU6050_TORN,       /* the sensor let go of the bus in the middle of a burst */
+    HK_MPU6050_DEAD_BUS,   /* too many failures of these two in a row; restarted */
+    HK_MPU6050_REGISTER,   /* a register had lost its value; restarted */
+    HK_MPU6050_SELF_RESET, /* the sensor had reset itself; restarted */
+    HK_MPU6050_LOST_READY, /* samples were there that INT had not announced; polled since */
+    HK_MPU6050_SILENT,     /* no samples, for no reason that could be found; restarted */
+    HK_MPU6050_FROZEN,     /* the same sample over and over; restarted */
+    HK_MPU6050_VARIANT,    /* another part than the design's, accepted */
+    HK_MPU6050_KINDS
+} hk_mpu6050_kind_t;
+
 typedef struct {
     uint32_t time_us;
+    bool after_gap;   /* too many samples were lost before this one to go on integrating */
     int16_t accel[3]; /* counts, sensor axes */
     int16_t temperature;
     int16_t gyro[3];
@@ -37,12 +54,25 @@ typedef struct {
     hk_mpu6050_state_t state;
     uint32_t since_us;  /* start of the current wait */
     uint32_t reset_us;  /* when the device reset was written */
-    uint32_t sample_us; /* when the sample read last was announced */
+    uint32_t ready_us;  /* the announcement that was answered last */
+    uint32_t sample_us; /* when the sample accepted last was announced or found */
+    uint32_t poll_us;   /* when the sensor was last read without an announcement */
+    uint32_t check_us;  /* when a register was last checked */
     uint8_t step;       /* register of the configuration, or try of the identification */
+    uint8_t check_step; /* register to be checked next */
     uint8_t failures;   /* consecutive failed transfers */
     uint8_t who_am_i;   /* last identity read; 0 if none could be */
     uint8_t to_drop;    /* samples still to be dropped */
-    uint16_t errors;    /* failed transfers and restarts since start; stops at its maximum */
+    bool owed;          /* an announced sample could not be read yet */
+    bool overdue;       /* no announcement when one was due: look without */
+    bool polling;       /* INT is not to be relied on */
+    uint8_t bad_register; /* the one that was found wrong last, and its value */
+    uint8_t bad_value;
+    uint8_t last[HK_MPU6050_BURST_BYTES]; /* the sample read last */
+    uint16_t equal;     /* how often it has come again */
+    uint16_t errors;    /* all but variants, since start; it and those below stop at their maximum */
+    uint16_t count[HK_MPU6050_KINDS];
+    uint16_t untold;    /* one bit for each kind that the application has not told yet */
 } hk_mpu6050_t;
 
 void hk_mpu6050_init(hk_mpu6050_t *sensor, uint32_t now_us);
@@ -53,6 +83,9 @@ hk_mpu6050_event_t hk_mpu6050_poll(hk_mpu6050_t *sensor, uint32_t now_us,
 
 /* True if the next step needs time to pass, or a sample to come. */
 bool hk_mpu6050_waiting(const hk_mpu6050_t *sensor);
+
+/* The part of that identity, for messages. */
+const char *hk_mpu6050_part(uint8_t who_am_i);
 
 /* No answer, or a bus that reads all zeros or all ones, is a fault of the bus, not another part. */
 bool hk_mpu6050_bus_fault(const hk_mpu6050_t *sensor);

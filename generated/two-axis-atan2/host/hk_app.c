@@ -27,10 +27,124 @@ static void set_status(hk_app_t *app, uint8_t system_status)
     }
 }
 
+/* --- Texts ---------------------------------------------------------------------------------- */
+
+typedef struct {
+    char text[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN + 1];
+    uint8_t length;
+} hk_line_t;
+
+static void put_character(hk_line_t *line, char character)
+{
+    if (line->length < sizeof line->text - 1U) {
+        line->text[line->length++] = character;
+        line->text[line->length] = '\0';
+    }
+}
+
+static void put(hk_line_t *line, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        put_character(line, *text);
+    }
+}
+
+static void put_hex(hk_line_t *line, uint8_t value)
+{
+    put(line, "0x");
+    put_character(line, HK_HEX_DIGITS[value >> 4]);
+    put_character(line, HK_HEX_DIGITS[value & 0x0FU]);
+}
+
+static void put_number(hk_line_t *line, uint16_t value)
+{
+    uint16_t unit = 10000U;
+
+    while (unit > 1U && value < unit) {
+        unit /= 10U;
+    }
+    for (; unit > 0U; unit /= 10U) {
+        put_character(line, HK_HEX_DIGITS[value / unit % 10U]);
+    }
+}
+
+/* What stands in a text for each kind of event; no failed transfer is told by itself. */
+static const char *what_happened(hk_mpu6050_kind_t kind)
+{
+    switch (kind) {
+    case HK_MPU6050_TORN:
+        return "torn burst";
+    case HK_MPU6050_DEAD_BUS:
+        return "bus failed, restart";
+    case HK_MPU6050_REGISTER:
+        return "restart, register ";
+    case HK_MPU6050_SELF_RESET:
+        return "had reset itself, restart";
+    case HK_MPU6050_LOST_READY:
+        return "INT lost, polling";
+    case HK_MPU6050_SILENT:
+        return "silent, restart";
+    case HK_MPU6050_FROZEN:
+        return "frozen, restart";
+    case HK_MPU6050_VARIANT:
+        return "WHO_AM_I ";
+    case HK_MPU6050_TRANSFER:
+    case HK_MPU6050_KINDS:
+        break;
+    }
+    return "";
+}
+
+static bool is_grave(hk_mpu6050_kind_t kind)
+{
+    return kind != HK_MPU6050_TORN && kind != HK_MPU6050_LOST_READY && kind != HK_MPU6050_VARIANT;
+}
+
+/* One line: what happened, what was found, and how often so far. */
+static bool tell(hk_app_t *app, hk_mpu6050_kind_t kind)
+{
+    const hk_mpu6050_t *sensor = &app->sensor;
+    hk_line_t line = {.length = 0U};
+
+    put(&line, "MPU-6050: ");
+    put(&line, what_happened(kind));
+    if (kind == HK_MPU6050_VARIANT) {
+        put_hex(&line, sensor->who_am_i);
+        put(&line, " taken for ");
+        put(&line, hk_mpu6050_part(sensor->who_am_i));
+    } else {
+        if (kind == HK_MPU6050_REGISTER) {
+            put_hex(&line, sensor->bad_register);
+            put(&line, " was ");
+            put_hex(&line, sensor->bad_value);
+        }
+        put(&line, " #");
+        put_number(&line, sensor->count[kind]);
+    }
+    return hk_telemetry_text(&app->telemetry,
+                             is_grave(kind) ? MAV_SEVERITY_ERROR : MAV_SEVERITY_WARNING, line.text);
+}
+
+/* Tell one event that has not been told; one that does not fit the queue is told later. */
+static void tell_next(hk_app_t *app)
+{
+    uint8_t kind;
+
+    for (kind = 0U; kind < HK_MPU6050_KINDS; kind++) {
+        const uint16_t bit = (uint16_t)(1U << kind);
+
+        if ((app->sensor.untold & bit) != 0U) {
+            if (tell(app, (hk_mpu6050_kind_t)kind)) {
+                app->sensor.untold &= (uint16_t)~bit;
+            }
+            return;
+        }
+    }
+}
+
 static void refuse(hk_app_t *app)
 {
-    const uint8_t identity = app->sensor.who_am_i;
-    char text[] = "MPU-6050 refused: WHO_AM_I is 0x??";
+    hk_line_t line = {.length = 0U};
 
     set_status(app, MAV_STATE_CRITICAL);
     if (hk_mpu6050_bus_fault(&app->sensor)) {
@@ -38,15 +152,20 @@ static void refuse(hk_app_t *app)
                                 "MPU-6050 does not answer: I2C bus fault");
         return;
     }
-    text[sizeof text - 3U] = HK_HEX_DIGITS[identity >> 4];
-    text[sizeof text - 2U] = HK_HEX_DIGITS[identity & 0x0FU];
-    (void)hk_telemetry_text(&app->telemetry, MAV_SEVERITY_CRITICAL, text);
+    put(&line, "MPU-6050 refused: WHO_AM_I is ");
+    put_hex(&line, app->sensor.who_am_i);
+    (void)hk_telemetry_text(&app->telemetry, MAV_SEVERITY_CRITICAL, line.text);
 }
+
+/* --- Samples -------------------------------------------------------------------------------- */
 
 static void take_sample(hk_app_t *app, const hk_mpu6050_sample_t *sample)
 {
     hk_sample_facts_t facts;
 
+    if (sample->after_gap) {
+        hk_filter_init(&app->filter);
+    }
     hk_hal_mark_begin();
     facts.restarted = hk_filter_update(&app->filter, sample->accel, sample->gyro);
     hk_hal_mark_end();
@@ -79,6 +198,9 @@ static void poll_sensor(hk_app_t *app)
     case HK_MPU6050_NOTHING:
         break;
     }
+    if (app->sensor.state != HK_MPU6050_RUN && app->system_status == MAV_STATE_ACTIVE) {
+        set_status(app, MAV_STATE_CRITICAL); /* until samples come again */
+    }
 }
 
 static void send_heartbeat(hk_app_t *app)
@@ -105,6 +227,7 @@ bool hk_app_poll(hk_app_t *app)
 {
     advance_clock(app);
     poll_sensor(app);
+    tell_next(app);
     send_heartbeat(app);
     return hk_mpu6050_waiting(&app->sensor);
 }

@@ -2,17 +2,19 @@
 
 import avr8js from 'avr8js';
 
+import { PAINT, Segments, stackBytes } from '../js/measure.mjs';
+
 const {
   AVRIOPort, AVRTWI, AVRTimer, AVRUSART, CPU, PinState,
   avrInstruction, portCConfig, portDConfig, timer1Config, twiConfig, usart0Config,
 } = avr8js;
 
-export const CLOCK_HZ = 16_000_000;
+const CLOCK_HZ = 16_000_000;
 const NS_PER_CYCLE = 1e9 / CLOCK_HZ;
+const PATIENCE_CYCLES = CLOCK_HZ / 100;
 const FLASH_BYTES = 32768;
 const SRAM_BYTES = 2048;
 const SRAM_START = 0x100;
-const PAINT = 0xc5;
 
 const SLEEP = 0x9588;
 const RETI = 0x9518;
@@ -39,12 +41,13 @@ export class Machine {
     this.cpu.data.fill(PAINT, SRAM_START, SRAM_START + SRAM_BYTES);
     this.sensor = sensor;
     this.onByte = onByte;
-    this.segments = { count: 0, sum: 0, min: Infinity, max: 0 };
+    this.segments = new Segments();
     this.sleeping = false;
     this.sleepCycles = 0;
     this.interruptDepth = 0;
     this.interruptCycles = 0;
     this.linkIdleAt = 0;
+    this.playedAt = Infinity;
     this.#wireClock();
     this.#wireLink();
     this.#wirePins();
@@ -62,27 +65,26 @@ export class Machine {
     return this.cpu.cycles / CLOCK_HZ;
   }
 
-  // True when the table has been played and every byte is out.
+  // True when the table has been played and every byte is out. Firmware that polls the sensor does
+  // not sleep; it is given some time to finish.
   get finished() {
     const queued = (this.cpu.data[usart0Config.UCSRB] & UDRIE) !== 0;
-    return this.sleeping && !queued && this.cpu.cycles >= this.linkIdleAt && this.sensor.exhausted;
+    const { cycles } = this.cpu;
+    if (!this.sensor.exhausted) {
+      this.playedAt = Infinity;
+      return false;
+    }
+    this.playedAt = Math.min(this.playedAt, cycles);
+    const done = this.sleeping || cycles - this.playedAt > PATIENCE_CYCLES;
+    return done && !queued && cycles >= this.linkIdleAt;
   }
 
-  // Bytes of stack used so far: all above the longest run of paint that is left.
+  get busyShare() {
+    return 1 - this.sleepCycles / this.cpu.cycles;
+  }
+
   get stackBytes() {
-    const { data } = this.cpu;
-    const top = SRAM_START + SRAM_BYTES;
-    let longest = 0;
-    let end = top;
-    let intact = 0;
-    for (let address = SRAM_START; address < top; address++) {
-      intact = data[address] === PAINT ? intact + 1 : 0;
-      if (intact > longest) {
-        longest = intact;
-        end = address + 1;
-      }
-    }
-    return top - end;
+    return stackBytes(this.cpu.data.subarray(SRAM_START, SRAM_START + SRAM_BYTES));
   }
 
   // avr8js wakes the timer at every tick. Nobody sees its count between reads, which bring it up to
@@ -128,9 +130,16 @@ export class Machine {
   #wireBus() {
     const { cpu, sensor } = this;
     const twi = new AVRTWI(cpu, twiConfig, CLOCK_HZ);
+    let session = 0; // a transfer that the firmware has given up comes to nothing
     const after = (bits, action) => {
-      const cycles = Math.round((bits * CLOCK_HZ) / twi.sclFrequency);
+      const begun = session;
+      sensor.advance(this.nowNs);
+      const heldNs = bits > 1 ? sensor.stretchNs : 0; // a byte; START and STOP have one bit
+      const cycles = Math.round((bits * CLOCK_HZ) / twi.sclFrequency + heldNs / NS_PER_CYCLE);
       cpu.addClockEvent(() => {
+        if (begun !== session) {
+          return;
+        }
         sensor.advance(this.nowNs);
         action();
         this.sensorMoved();
@@ -155,7 +164,9 @@ export class Machine {
     const writeControl = cpu.writeHooks[twiConfig.TWCR];
     cpu.writeHooks[twiConfig.TWCR] = (value, ...rest) => {
       if ((value & TWEN) === 0) {
+        session += 1;
         twi.busy = false;
+        sensor.stop();
         cpu.data[twiConfig.TWSR] = (cpu.data[twiConfig.TWSR] & 0x07) | TWI_IDLE;
       }
       return writeControl(value, ...rest);
@@ -165,19 +176,8 @@ export class Machine {
   // GPIOR0 = 1 begins and GPIOR0 = 0 ends a segment; interrupts within it are not counted.
   #wireMarks() {
     const { cpu, segments } = this;
-    let begin = null;
     cpu.writeHooks[GPIOR0] = (value) => {
-      const own = cpu.cycles - this.interruptCycles;
-      if (value !== 0) {
-        begin = own;
-      } else if (begin !== null) {
-        const cycles = own - begin;
-        segments.count += 1;
-        segments.sum += cycles;
-        segments.min = Math.min(segments.min, cycles);
-        segments.max = Math.max(segments.max, cycles);
-        begin = null;
-      }
+      segments.mark(value, cpu.cycles - this.interruptCycles);
       return false;
     };
   }
@@ -252,7 +252,8 @@ export class Machine {
   // Run until a time or until the machine has finished. Where an instruction sets the interrupt flag,
   // be it SEI, RETI or OUT to SREG, the real part runs one more before any interrupt. Sleeping
   // without a race rests on that, and so does the compiler when it moves the stack pointer.
-  run(untilCycles) {
+  runUntil(timeS) {
+    const untilCycles = Math.floor(timeS * CLOCK_HZ);
     const { cpu } = this;
     const { data, progMem } = cpu;
     while (cpu.cycles < untilCycles && !(this.sleeping && this.finished)) {

@@ -3,6 +3,8 @@
 import math
 
 from hostkit.errors import FormatError
+from hostkit.filters.arctan import arctan_table
+from hostkit.filters.arctan_bounds import arcsin_bound_rad, arctan_bound_rad
 from hostkit.filters.complementary.bounds import (
     HALF_UNIT_RAD,
     SampleErrors,
@@ -11,7 +13,6 @@ from hostkit.filters.complementary.bounds import (
 )
 from hostkit.filters.complementary.gate import force_gate
 from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S, Settings, settings
-from hostkit.filters.cordic import cordic_table
 from hostkit.fixedpoint import Coefficient, coefficient, round_half_up
 from hostkit.records import AXES, FilterDesign
 from hostkit.sensors import SENSORS
@@ -60,7 +61,7 @@ def lower(design: FilterDesign) -> FixedPointSpec:
         gyro_bias_raw=tuple(round_half_up(value) for value in bias),
         gate=None if own.gate_g is None else force_gate(own.gate_g, gravity),
         integral=integral,
-        cordic=cordic_table(),
+        arctan=arctan_table(),
         gravity_count=gravity,
         hidden=() if integral is None else _bias_words(design, integral),
         error_bound_rad=_bound_rad(errors, blend, integral),
@@ -143,16 +144,15 @@ def _sample_errors(
         bias = 0.5
     rate = max(abs(gain.quantised - gain.real) * 32768 for gain in gains)
     return SampleErrors(
-        tilt_rad=_cordic_bound_rad(gravity * LEAST_FORCE_G) + offset * RAD_PER_HALF_TURN_LSB,
+        tilt_rad=_tilt_bound_rad(design, gravity) + offset * RAD_PER_HALF_TURN_LSB,
         step_rad=HALF_UNIT_RAD + (bias + rate) * RAD_PER_HALF_TURN_LSB,
     )
 
 
-def _cordic_bound_rad(least_count: float) -> float:
-    """Residual angle of the last step, plus one unit of truncation per step and pass."""
-    table = cordic_table()
-    truncation = 2.0 * table.steps / (least_count * 2.0**table.guard_bits)
-    return 2.0 ** (1 - table.steps) + truncation
+def _tilt_bound_rad(design: FilterDesign, gravity: int) -> float:
+    if design.tilt == "arcsin":
+        return arcsin_bound_rad(gravity)
+    return arctan_bound_rad(gravity * LEAST_FORCE_G)
 
 
 def _bound_rad(errors: SampleErrors, blend: Coefficient, integral: BiasIntegral | None) -> float:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import pitch_from_up, roll_from_up
-from hostkit.filters.cordic import arcsin_count, atan2_count, atan2_magnitude
+from hostkit.filters.arctan import arcsin_count, atan2_count, atan2_length
 from hostkit.records import Axis, TiltMethod
 from hostkit.spec import FixedPointSpec
 
@@ -54,11 +54,11 @@ def measured_tilt_raw(spec: FixedPointSpec, accel_count: IntArray) -> IntArray:
     angles: dict[Axis, IntArray] = {}
     if spec.tilt == "arcsin":
         for axis, component in (("roll", y), ("pitch", -x)):
-            angles[axis] = arcsin_count(spec.cordic, component, spec.gravity_count)  # type: ignore[index]
+            angles[axis] = arcsin_count(spec.arctan, component, spec.gravity_count)  # type: ignore[index]
     else:
-        angles["roll"], magnitude = atan2_count(spec.cordic, y, z)
+        angles["roll"], length, stretch = atan2_count(spec.arctan, y, z)
         if "pitch" in spec.axes:
-            angles["pitch"] = atan2_magnitude(spec.cordic, -x, magnitude)
+            angles["pitch"] = atan2_length(spec.arctan, -x, length, stretch)
     return np.stack([angles[axis] for axis in spec.axes], axis=-1)
 
 

@@ -1,0 +1,15 @@
+"""The STM32F103C8 at 72 MHz, as on a Blue Pill: 64 KiB of flash, 20 KiB of RAM.
+
+USART 1 divides 72 MHz by 144 for 500 kbit/s, exactly.
+"""
+
+from hostkit.targets.target import Target
+
+STM32F103 = Target(
+    name="stm32f103",
+    title="STM32F103C8 at 72 MHz (Blue Pill)",
+    kind="mcu",
+    folders=("common", "virtual_mpu6050", "stm32f103"),
+    clock_hz=72_000_000,
+    baud=500_000,
+)
