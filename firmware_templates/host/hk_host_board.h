@@ -25,6 +25,9 @@ typedef struct {
     uint32_t fault_row; /* nack and hold_sda begin when so many rows have been played */
     hk_host_fault_t faults[HK_PLANNED_FAULTS];
     uint32_t fault_count;
+    const char *store;    /* file of the non-volatile store, or NULL */
+    const char *received; /* file of what the link receives, or NULL */
+    long power_cut;       /* bytes written to the store before the supply fails, or -1 */
 } hk_host_options_t;
 
 typedef struct {

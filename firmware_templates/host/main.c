@@ -26,6 +26,9 @@ static const char usage[] =
     "--realtime    keep pace with the wall clock and loop the table until SIGTERM\n"
     "--statistics  write one line of JSON there at the end\n"
     "--who-am-i, --nack, --hold-sda: faults of the sensor; --fault-row: from which row on\n"
+    "--store FILE  what the non-volatile store holds; written back\n"
+    "--received FILE  what the link receives and when\n"
+    "--power-cut N  the supply fails once so many bytes have been written to the store\n"
     "--fault       plan a fault: see hk_fault_kind_t; numbers, KIND from 0\n";
 
 static void fail(const char *what, const char *detail)
@@ -130,6 +133,12 @@ static const char *parse(int argc, char **argv, hk_host_options_t *options,
             options->hold_sda = number(option, value);
         } else if (strcmp(option, "--fault") == 0) {
             add_fault(value, options);
+        } else if (strcmp(option, "--store") == 0) {
+            options->store = value;
+        } else if (strcmp(option, "--received") == 0) {
+            options->received = value;
+        } else if (strcmp(option, "--power-cut") == 0) {
+            options->power_cut = (long)number(option, value);
         } else if (strcmp(option, "--fault-row") == 0) {
             options->fault_row = number(option, value);
         } else {
@@ -167,7 +176,7 @@ static void on_signal(int number_of_signal)
 
 int main(int argc, char **argv)
 {
-    hk_host_options_t options = {.who_am_i = -1};
+    hk_host_options_t options = {.who_am_i = -1, .power_cut = -1};
     const char *statistics = NULL;
     const char *table = parse(argc, argv, &options, &statistics);
     double *rows = load_table(table, &options.row_count);

@@ -131,7 +131,9 @@ def serve(folder: Path, target: Target, design: FilterDesign, recording: Recordi
         sys.stdout.flush()
         say(f"{target.name} waits there; for example: hostkit monitor DESIGN --port {path}")
 
-    serve_pty(lambda send, stop: board.serve(folder, stimulus, send, stop), announce)
+    serve_pty(
+        lambda send, stop, receive: board.serve(folder, stimulus, send, stop, receive), announce
+    )
 
 
 def show_progress(total: int) -> Callable[[int], None]:

@@ -14,6 +14,13 @@ Vector = NDArray[np.float64]
 Progress = Callable[[int], None]
 Send = Callable[[bytes], None]
 Stop = Callable[[], bool]
+Receive = Callable[[], bytes]
+"""Gives the bytes that have come for the board since it was last asked; none is the empty text."""
+
+
+def nothing_received() -> bytes:
+    """Return no bytes: what comes over a link that nobody talks into."""
+    return b""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +58,14 @@ class SensorFaults:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LinkInput:
+    """Bytes that are sent to the board's link, from a time of the run on, s."""
+
+    time_s: float
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Stimulus:
     """What the virtual sensor feels, one row per output sample, in sensor axes.
 
@@ -67,6 +82,14 @@ class Stimulus:
         Whether the table starts again at its end. `run` needs an end; `serve` always loops.
     faults
         What goes wrong.
+    received
+        What the link receives, in order of time. `run` plays it; `serve` asks for it instead.
+    store
+        What the non-volatile store of the board holds at the start, from its first byte on; the
+        rest of it is erased.
+    power_cut_after
+        Once the firmware has written so many bytes to the non-volatile store, the supply of the
+        board fails within the next: that byte is spoilt, and the board starts again. None: never.
     """
 
     angular_rate_rad_s: Vector
@@ -75,6 +98,9 @@ class Stimulus:
     settle_samples: int = 0
     loop: bool = False
     faults: SensorFaults = SensorFaults()
+    received: tuple[LinkInput, ...] = ()
+    store: bytes = b""
+    power_cut_after: int | None = None
 
     def __post_init__(self) -> None:
         """Refuse shapes that do not belong together and values that are not finite."""
@@ -120,7 +146,10 @@ class BoardRun:
         Deepest stack; None where nothing measures it.
     faults
         What went wrong, by name: ``unread_samples`` that the firmware did not read in time,
-        ``stalled`` if it stopped taking samples, ``struck`` planned faults.
+        ``stalled`` if it stopped taking samples, ``struck`` planned faults, ``resets`` of the
+        processor by its watchdog, on request or after a power cut.
+    store
+        What the non-volatile store holds at the end.
     """
 
     stream: bytes
@@ -129,6 +158,7 @@ class BoardRun:
     cost_unit: str = "cycles"
     stack_bytes: int | None = None
     faults: tuple[tuple[str, int], ...] = ()
+    store: bytes = b""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
-from hostkit.emulation.board import Progress, Send, Stop
+from hostkit.emulation.board import Progress, Receive, Send, Stop
 from hostkit.errors import EmulationError
 
 CHUNK_BYTES = 65536
-POLL_S = 0.05
+POLL_S = 0.01
 GRACE_S = 2.0
 """How long a child may take to end after it was asked to."""
 REASON_LINES = 3
@@ -46,22 +46,32 @@ def collect(command: Sequence[str], *, timeout_s: float, progress: Progress | No
     return b"".join(pieces)
 
 
-def stream(command: Sequence[str], send: Send, stop: Stop) -> None:
-    """Run a program and hand on what it writes until `stop` says so.
+def stream(command: Sequence[str], send: Send, stop: Stop, receive: Receive) -> None:
+    """Run a program, hand on what it writes and give it what comes, until `stop` says so.
 
     Raises
     ------
     EmulationError
         If it ends by itself, naming the last lines it said.
     """
-    with _child(command) as (child, said):
+    with _child(command, stdin=subprocess.PIPE) as (child, said):
+        assert child.stdin is not None
+        os.set_blocking(child.stdin.fileno(), False)
         for piece in _output(child):
             if stop():
                 return
             if piece:
                 send(piece)
+            _give(child.stdin, receive())
         _require_success(child, command, said)
         raise EmulationError(f"{_name(command)} ended although it was to go on")
+
+
+def _give(stdin: IO[bytes], data: bytes) -> None:
+    """Write to a program; what it does not take in time is lost, as on a wire."""
+    if data:
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):
+            os.write(stdin.fileno(), data)
 
 
 def reason(text: str) -> str:
@@ -72,13 +82,15 @@ def reason(text: str) -> str:
 
 
 @contextlib.contextmanager
-def _child(command: Sequence[str]) -> Iterator[tuple[subprocess.Popen[bytes], IO[bytes]]]:
+def _child(
+    command: Sequence[str], *, stdin: int = subprocess.DEVNULL
+) -> Iterator[tuple[subprocess.Popen[bytes], IO[bytes]]]:
     """Start a program in its own session; end it, and all it started, whatever happens."""
     with tempfile.TemporaryFile() as said:
         try:
             child = subprocess.Popen(
                 command,
-                stdin=subprocess.DEVNULL,
+                stdin=stdin,
                 stdout=subprocess.PIPE,
                 stderr=said,
                 start_new_session=True,
@@ -94,6 +106,8 @@ def _child(command: Sequence[str]) -> Iterator[tuple[subprocess.Popen[bytes], IO
 def _end(child: subprocess.Popen[bytes]) -> None:
     assert child.stdout is not None
     child.stdout.close()
+    if child.stdin is not None:
+        child.stdin.close()
     if child.poll() is None:
         child.terminate()
         try:

@@ -4,7 +4,16 @@ import dataclasses
 import tempfile
 from pathlib import Path
 
-from hostkit.emulation.board import BoardRun, BuildResult, Progress, Send, Stimulus, Stop
+from hostkit.emulation.board import (
+    BoardRun,
+    BuildResult,
+    Progress,
+    Receive,
+    Send,
+    Stimulus,
+    Stop,
+    nothing_received,
+)
 from hostkit.emulation.child import collect, stream
 from hostkit.emulation.make import make
 from hostkit.emulation.playback import (
@@ -61,7 +70,9 @@ def run(folder: Path, stimulus: Stimulus, *, progress: Progress | None = None) -
         return board_run(play, heard, progress)
 
 
-def serve(folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
+def serve(
+    folder: Path, stimulus: Stimulus, send: Send, stop: Stop, receive: Receive = nothing_received
+) -> None:
     """Play a stimulus over and over in real time until `stop` says so.
 
     Raises
@@ -73,7 +84,7 @@ def serve(folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
     """
     with tempfile.TemporaryDirectory(prefix="hostkit-host-") as name:
         play = playback(dataclasses.replace(stimulus, loop=True), Path(name))
-        stream(_command(folder, play), send, stop)
+        stream(_command(folder, play), send, stop, receive)
 
 
 def _command(folder: Path, play: Playback) -> list[str]:

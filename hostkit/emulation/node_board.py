@@ -5,7 +5,16 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from hostkit.emulation.board import BoardRun, BuildResult, Progress, Send, Stimulus, Stop
+from hostkit.emulation.board import (
+    BoardRun,
+    BuildResult,
+    Progress,
+    Receive,
+    Send,
+    Stimulus,
+    Stop,
+    nothing_received,
+)
 from hostkit.emulation.child import collect, stream
 from hostkit.emulation.image import build_image
 from hostkit.emulation.playback import (
@@ -79,7 +88,14 @@ class NodeBoard:
             heard = collect(command, timeout_s=run_timeout_s(stimulus), progress=progress)
             return board_run(play, heard, progress)
 
-    def serve(self, folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
+    def serve(
+        self,
+        folder: Path,
+        stimulus: Stimulus,
+        send: Send,
+        stop: Stop,
+        receive: Receive = nothing_received,
+    ) -> None:
         """Play a stimulus over and over in real time until `stop` says so.
 
         Raises
@@ -93,7 +109,7 @@ class NodeBoard:
         """
         with tempfile.TemporaryDirectory(prefix="hostkit-board-") as name:
             play = playback(dataclasses.replace(stimulus, loop=True), Path(name))
-            stream(self._command(folder, play, Path(name)), send, stop)
+            stream(self._command(folder, play, Path(name)), send, stop, receive)
 
     def _command(self, folder: Path, play: Playback, work: Path) -> list[str]:
         require("node", self.emulator)

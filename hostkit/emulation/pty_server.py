@@ -10,14 +10,15 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from types import FrameType
 
-from hostkit.emulation.board import Send, Stop
+from hostkit.emulation.board import Receive, Send, Stop
 from hostkit.errors import DeviceError
 
 POLL_S = 0.05
+CHUNK_BYTES = 4096
 SLOW_READER_S = 1.0
 """How long the port waits for a reader that does not keep up; then bytes are lost, as on a wire."""
 
-Serve = Callable[[Send, Stop], None]
+Serve = Callable[[Send, Stop, Receive], None]
 
 
 class PtyPort:
@@ -56,8 +57,6 @@ class PtyPort:
         """Tell whether a reader has the port open; what one that left did not read is dropped."""
         events = dict(self._poll.poll(0)).get(self._master, 0)
         there = not events & select.POLLHUP
-        if events & select.POLLIN and there:
-            self._drop_input()
         if self._listening and not there:
             self._refresh()
         self._listening = there
@@ -71,9 +70,12 @@ class PtyPort:
         finally:
             os.close(reader)
 
-    def _drop_input(self) -> None:
-        with contextlib.suppress(OSError):
-            os.read(self._master, 65536)
+    def receive(self) -> bytes:
+        """Return what has been written into the port since it was last asked."""
+        try:
+            return os.read(self._master, CHUNK_BYTES)
+        except OSError:
+            return b""
 
     def send(self, data: bytes) -> None:
         """Write to the reader; without one, or past one that does not read, bytes are lost."""
@@ -99,7 +101,8 @@ def serve_pty(serve: Serve, announce: Callable[[str], None], stop: Stop | None =
     Parameters
     ----------
     serve
-        Runs the device: takes where to send bytes, and a question whether to stop.
+        Runs the device: takes where to send bytes, a question whether to stop, and one for the
+        bytes that have come.
     announce
         Called once with the path of the port.
     stop
@@ -123,7 +126,7 @@ def serve_pty(serve: Serve, announce: Callable[[str], None], stop: Stop | None =
             if finished():
                 return
             time.sleep(POLL_S)
-        serve(port.send, finished)
+        serve(port.send, finished, port.receive)
 
 
 @contextlib.contextmanager

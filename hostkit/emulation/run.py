@@ -14,6 +14,7 @@ from hostkit.emulation import avr_board, ghdl, host_board, rp2040_board, stm32_b
 from hostkit.emulation.board import (
     BoardRun,
     BuildResult,
+    Receive,
     Send,
     Stimulus,
     Stop,
@@ -55,7 +56,9 @@ class Board(Protocol):
     ) -> BoardRun:
         """Play a stimulus to its end."""
 
-    def serve(self, folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
+    def serve(
+        self, folder: Path, stimulus: Stimulus, send: Send, stop: Stop, receive: Receive
+    ) -> None:
         """Play a stimulus over and over in real time."""
 
 

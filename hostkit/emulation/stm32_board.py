@@ -16,10 +16,12 @@ from hostkit.emulation.board import (
     BoardRun,
     BuildResult,
     Progress,
+    Receive,
     Send,
     SensorFaults,
     Stimulus,
     Stop,
+    nothing_received,
 )
 from hostkit.emulation.image import build_image
 from hostkit.emulation.playback import require_end
@@ -76,7 +78,9 @@ def run(folder: Path, stimulus: Stimulus, *, progress: Progress | None = None) -
         return _board_run(machine, stalled)
 
 
-def serve(folder: Path, stimulus: Stimulus, send: Send, stop: Stop) -> None:
+def serve(
+    folder: Path, stimulus: Stimulus, send: Send, stop: Stop, receive: Receive = nothing_received
+) -> None:
     """Play a stimulus over and over in real time until `stop` says so.
 
     Raises

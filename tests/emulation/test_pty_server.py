@@ -13,7 +13,7 @@ import pytest
 from boards import hear, stimulus
 
 from hostkit.emulation import host_board
-from hostkit.emulation.board import Send, Stop
+from hostkit.emulation.board import Receive, Send, Stop
 from hostkit.emulation.pty_server import serve_pty
 
 TIMEOUT_S = 20.0
@@ -33,7 +33,7 @@ class Ticker:
         self.tick = 0
         self.starts = 0
 
-    def serve(self, send: Send, stop: Stop) -> None:
+    def serve(self, send: Send, stop: Stop, _receive: Receive) -> None:
         self.starts += 1
         while not stop():
             send(b"%d\n" % self.tick)
@@ -146,7 +146,7 @@ def test_a_reader_may_come_back_often(server: Server) -> None:
 def test_a_reader_that_does_not_read_does_not_stop_the_device() -> None:
     told = [0]
 
-    def serve(send: Send, stop: Stop) -> None:
+    def serve(send: Send, stop: Stop, _receive: Receive) -> None:
         while not stop() and told[0] < 100:
             send(b"x" * 4096)
             told[0] += 1
@@ -170,7 +170,7 @@ def test_what_a_reader_sends_is_taken_and_dropped(server: Server) -> None:
 
 
 def test_an_error_of_the_device_gets_out() -> None:
-    def serve(_send: Send, _stop: Stop) -> None:
+    def serve(_send: Send, _stop: Stop, _receive: Receive) -> None:
         raise RuntimeError("broken")
 
     server = Server(serve)
@@ -181,7 +181,7 @@ def test_an_error_of_the_device_gets_out() -> None:
 
 
 def test_firmware_over_a_pseudo_terminal(host_folder: Path) -> None:
-    server = Server(lambda send, stop: host_board.serve(host_folder, stimulus(50), send, stop))
+    server = Server(lambda send, stop, _: host_board.serve(host_folder, stimulus(50), send, stop))
     reader = Reader(server.path)
     heard = hear(reader.read(8000))
     reader.close()
@@ -201,7 +201,7 @@ from boards import stimulus
 from hostkit.emulation import host_board
 from hostkit.emulation.pty_server import serve_pty
 folder = Path(sys.argv[1])
-serve_pty(lambda send, stop: host_board.serve(folder, stimulus(50), send, stop),
+serve_pty(lambda send, stop, _: host_board.serve(folder, stimulus(50), send, stop),
           lambda path: print(path, flush=True))
 print("ended", flush=True)
 """

@@ -6,5 +6,5 @@ import { Machine } from './machine.mjs';
 
 const FLASH_BYTES = 32768;
 
-await play((image, sensor, onByte) =>
-  new Machine(parseIntelHex(image.toString('latin1'), FLASH_BYTES), sensor, onByte));
+await play((image, sensor, onByte, nonvolatile) =>
+  new Machine(parseIntelHex(image.toString('latin1'), FLASH_BYTES), sensor, onByte, nonvolatile));

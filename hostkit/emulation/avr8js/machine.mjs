@@ -34,12 +34,14 @@ const INT_PIN = 2;
 
 export class Machine {
   // image: flash content; onByte: called with every byte that the link sends.
-  constructor(image, sensor, onByte) {
+  constructor(image, sensor, onByte, nonvolatile) {
     const program = new Uint16Array(FLASH_BYTES / 2);
     new Uint8Array(program.buffer).set(image);
     this.cpu = new CPU(program, SRAM_BYTES);
     this.cpu.data.fill(PAINT, SRAM_START, SRAM_START + SRAM_BYTES);
     this.sensor = sensor;
+    this.nonvolatile = nonvolatile;
+    this.resets = 0;
     this.onByte = onByte;
     this.segments = new Segments();
     this.sleeping = false;

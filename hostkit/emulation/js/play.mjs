@@ -11,14 +11,20 @@
 // --who-am-i N, --nack N, --hold-sda CLOCKS: faults of the sensor; --fault-row N: from which row on
 // --fault KIND:ROW:AMOUNT: plan a fault of the sensor, as often as wanted; KIND as hk_fault_kind_t
 //                          numbers it
+// --store FILE       what the non-volatile store holds; written back at the end
+// --received FILE    what the link receives and when: float64 s, uint32 length, bytes, and so on;
+//                    with --realtime it receives what comes on standard input instead
+// --power-cut BYTES  the supply fails once so many bytes have been written to the store
 //
-// A machine has: sensor, segments, stackBytes, busyShare, timeS, finished, runUntil(timeS), and
-// sensorMoved(), to be called when something was done to the sensor.
+// A machine has: sensor, segments, stackBytes, busyShare, timeS, finished, resets, runUntil(timeS),
+// receive(byte), to be called with every byte that the link is to receive, and sensorMoved(), to be
+// called when something was done to the sensor.
 
 import { readFileSync, writeFileSync, writeSync } from 'node:fs';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
+import { NonVolatile } from './nonvolatile.mjs';
 import { VirtualSensor } from './virtual_sensor.mjs';
 
 const STALL_S = 5;
@@ -43,6 +49,9 @@ function options() {
       'hold-sda': { ...text, default: '0' },
       'fault-row': { ...text, default: '0' },
       fault: { ...text, multiple: true, default: [] },
+      store: text,
+      received: text,
+      'power-cut': text,
     },
   });
   for (const name of ['image', 'sensor', 'table']) {
@@ -98,6 +107,29 @@ class Watch {
   }
 }
 
+// Hands the machine what its link receives at the time that was planned.
+class Script {
+  constructor(file) {
+    this.pieces = [];
+    for (let at = 0; at < file.length;) {
+      const timeS = file.readDoubleLE(at);
+      const end = at + 12 + file.readUInt32LE(at + 8);
+      this.pieces.push({ timeS, bytes: file.subarray(at + 12, end) });
+      at = end;
+    }
+  }
+
+  get nextS() {
+    return this.pieces.length > 0 ? this.pieces[0].timeS : Infinity;
+  }
+
+  play(machine) {
+    while (machine.timeS >= this.nextS) {
+      this.pieces.shift().bytes.forEach((byte) => machine.receive(byte));
+    }
+  }
+}
+
 function armFaults(machine, values) {
   const { sensor } = machine;
   if (values.armed || sensor.rowsPlayed < Number(values['fault-row'])) {
@@ -110,12 +142,14 @@ function armFaults(machine, values) {
 }
 
 function runToEnd(machine, output, values) {
+  const script = new Script(values.received === undefined ? Buffer.alloc(0) : readFileSync(values.received));
   const watch = new Watch(machine);
   const armedSliceS = values.fault.length > 0 ? FAULT_SLICE_S : SLICE_S;
   const sliceS = values.armed ? armedSliceS : UNARMED_SLICE_S;
   let told = Date.now();
   while (!machine.finished && !watch.check() && !output.closed) {
-    machine.runUntil(machine.timeS + sliceS);
+    script.play(machine);
+    machine.runUntil(Math.min(machine.timeS + sliceS, script.nextS));
     armFaults(machine, values);
     output.flush();
     if (values.progress && Date.now() - told >= PROGRESS_MS) {
@@ -130,6 +164,7 @@ async function runInRealTime(machine, output, values) {
   let stop = false;
   process.on('SIGTERM', () => { stop = true; });
   process.on('SIGINT', () => { stop = true; });
+  process.stdin.on('data', (data) => data.forEach((byte) => machine.receive(byte)));
   let origin = performance.now() / 1000 - machine.timeS;
   while (!stop && !output.closed) {
     const due = performance.now() / 1000 - origin;
@@ -141,6 +176,7 @@ async function runInRealTime(machine, output, values) {
     output.flush();
     await sleep(REALTIME_SLICE_S * 1000);
   }
+  process.stdin.destroy();
 }
 
 function statistics(machine, stalled) {
@@ -150,6 +186,7 @@ function statistics(machine, stalled) {
     unread_samples: machine.sensor.unreadSamples,
     struck: machine.sensor.struck,
     stalled: stalled ? 1 : 0,
+    resets: machine.resets,
     time_s: machine.timeS,
     segments: count,
     cycles_min: count ? min : null,
@@ -174,7 +211,13 @@ async function run(makeMachine) {
     sensor.plan({ kind, row, amount });
   }
   const output = new Output();
-  const machine = makeMachine(readFileSync(values.image), sensor, (byte) => output.put(byte));
+  const nonvolatile = new NonVolatile(
+    values.store === undefined ? Buffer.alloc(0) : readFileSync(values.store),
+    Number(values['power-cut'] ?? Infinity),
+  );
+  const machine = makeMachine(
+    readFileSync(values.image), sensor, (byte) => output.put(byte), nonvolatile,
+  );
   values.armed = false;
   armFaults(machine, values);
   let stalled = false;
@@ -183,13 +226,16 @@ async function run(makeMachine) {
   } else {
     stalled = runToEnd(machine, output, values);
   }
+  if (values.store !== undefined) {
+    writeFileSync(values.store, nonvolatile.bytes);
+  }
   if (values.statistics !== undefined) {
     writeFileSync(values.statistics, `${JSON.stringify(statistics(machine, stalled))}\n`);
   }
 }
 
-// makeMachine: takes the bytes of the image, the sensor, and what is called with every byte that the
-// link sends.
+// makeMachine: takes the bytes of the image, the sensor, what is called with every byte that the link
+// sends, and the content of the non-volatile store.
 export async function play(makeMachine) {
   try {
     await run(makeMachine);

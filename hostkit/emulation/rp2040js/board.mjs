@@ -4,4 +4,5 @@ import { play } from '../js/play.mjs';
 import { Machine } from './machine.mjs';
 import { parseUf2 } from './uf2.mjs';
 
-await play((image, sensor, onByte) => new Machine(parseUf2(image), sensor, onByte));
+await play((image, sensor, onByte, nonvolatile) =>
+  new Machine(parseUf2(image), sensor, onByte, nonvolatile));

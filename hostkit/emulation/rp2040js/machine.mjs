@@ -47,7 +47,9 @@ function complain(name, message) {
 
 export class Machine {
   // image: flash content; onByte: called with every byte that the link sends.
-  constructor(image, sensor, onByte) {
+  constructor(image, sensor, onByte, nonvolatile) {
+    this.nonvolatile = nonvolatile;
+    this.resets = 0;
     this.chip = new RP2040();
     this.chip.logger = { debug() {}, info() {}, warn: complain, error: complain };
     this.chip.flash.set(image);
