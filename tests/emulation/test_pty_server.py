@@ -32,10 +32,12 @@ class Ticker:
     def __init__(self) -> None:
         self.tick = 0
         self.starts = 0
+        self.received = b""
 
-    def serve(self, send: Send, stop: Stop, _receive: Receive) -> None:
+    def serve(self, send: Send, stop: Stop, receive: Receive) -> None:
         self.starts += 1
         while not stop():
+            self.received += receive()
             send(b"%d\n" % self.tick)
             self.tick += 1
             time.sleep(0.005)
@@ -44,7 +46,7 @@ class Ticker:
 class Server:
     """serve_pty in a thread."""
 
-    def __init__(self, serve: Callable[[Send, Stop], None]) -> None:
+    def __init__(self, serve: Callable[[Send, Stop, Receive], None]) -> None:
         self.paths: list[str] = []
         self.error: BaseException | None = None
         self._stop = threading.Event()
@@ -52,7 +54,7 @@ class Server:
         self._thread.start()
         wait_for(lambda: self.paths)
 
-    def _run(self, serve: Callable[[Send, Stop], None]) -> None:
+    def _run(self, serve: Callable[[Send, Stop, Receive], None]) -> None:
         try:
             serve_pty(serve, self.paths.append, self._stop.is_set)
         except BaseException as error:
@@ -160,12 +162,13 @@ def test_a_reader_that_does_not_read_does_not_stop_the_device() -> None:
     server.close()
 
 
-def test_what_a_reader_sends_is_taken_and_dropped(server: Server) -> None:
+def test_what_a_reader_sends_reaches_the_device(server: Server, ticker: Ticker) -> None:
     reader = Reader(server.path)
     for _ in range(50):
         os.write(reader.fd, b"y" * 1000)
         reader.read(1)
     assert b"y" not in reader.read(200)
+    wait_for(lambda: ticker.received == b"y" * 50_000)
     reader.close()
 
 
