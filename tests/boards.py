@@ -32,6 +32,12 @@ def require_or_skip(*tools: str) -> None:
         pytest.skip(str(error))
 
 
+def program_or_skip(name: str) -> None:
+    """Skip where a program is missing that only tests need; its package has its name."""
+    if shutil.which(name) is None:
+        pytest.skip(f"{name} is not installed: sudo apt-get install {name}")
+
+
 def generated(target: str, folder: Path, code: FilterDesign | None = None) -> Path:
     write(generate(code or design(), TARGETS[target]), folder)
     return folder
