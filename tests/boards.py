@@ -24,8 +24,18 @@ BOOT, ACTIVE, CRITICAL = 1, 4, 5
 RESTARTED, SATURATED = 1, 2
 PICO_TOOLS = ("make", "gcc", "arm-none-eabi-gcc", "node", "rp2040js", "clang", "wasm-ld")
 
+TARGET_TOOLS = {
+    "host": ("gcc", "make"),
+    "atmega328p": ("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld"),
+    "rp2040": PICO_TOOLS,
+    "stm32f103": ("make", "arm-none-eabi-gcc", "gcc", "unicorn"),
+    "spartan3adsp": ("ghdl",),
+}
+
 
 def require_or_skip(*tools: str) -> None:
+    if "unicorn" in tools:
+        pytest.importorskip("unicorn")
     try:
         require(*tools)
     except ToolMissingError as error:
