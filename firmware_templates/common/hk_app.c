@@ -219,6 +219,7 @@ void hk_app_init(hk_app_t *app)
     app->to_attitude = 0U;
     app->system_status = MAV_STATE_BOOT;
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
+    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
     hk_telemetry_init(&app->telemetry);
 }
