@@ -8,6 +8,7 @@ import { SensorBus } from './bus.mjs';
 import { I2C0, Resets, UART0 } from './resets.mjs';
 import { Uart } from './uart.mjs';
 
+const PATIENCE_NS = 1e7;
 const RING_OSCILLATOR_HZ = 6_500_000;
 const RESET_VECTOR = 0x104; // in the flash, behind the loader and the stack pointer
 
@@ -58,6 +59,7 @@ export class Machine {
     this.segments = new Segments();
     this.threadCycles = 0;
     this.sleepNs = 0;
+    this.playedAt = Infinity;
     this.timer = this.chip.peripherals[TIMER_KEY];
     this.#wireInterrupts();
     this.bus = new SensorBus(this.chip, sensor);
@@ -78,9 +80,15 @@ export class Machine {
     return stackBytes(this.chip.sram);
   }
 
-  // True when the table has been played and every byte is out.
+  // True when the table has been played and every byte is out. Firmware that polls the sensor does
+  // not sleep; it is given some time to finish.
   get finished() {
-    return this.chip.core.waiting && this.uart.idle && this.sensor.exhausted;
+    const { nanos } = this.chip.clock;
+    if (this.playedAt === Infinity && !this.sensor.exhausted) {
+      return false;
+    }
+    this.playedAt = Math.min(this.playedAt, nanos);
+    return this.uart.idle && (this.chip.core.waiting || nanos - this.playedAt > PATIENCE_NS);
   }
 
   sensorMoved() {
@@ -162,7 +170,7 @@ export class Machine {
   runUntil(timeS) {
     const { clock, core } = this.chip;
     const untilNs = timeS * 1e9;
-    while (clock.nanos < untilNs && !this.finished) {
+    while (clock.nanos < untilNs && !(core.waiting && this.finished)) {
       if (core.waiting) {
         this.#doze(untilNs);
         continue;
