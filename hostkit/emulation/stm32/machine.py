@@ -1,14 +1,11 @@
 """The whole board: core, memory, peripherals, the sensor on its pins, and the course of time."""
 
-from unicorn import UC_HOOK_BLOCK, UC_HOOK_INTR, Uc, UcError
-from unicorn import arm_const as arm
-
 from hostkit.emulation.stm32.clocks import APB1ENR, APB2ENR, Clocks, FlashControl
-from hostkit.emulation.stm32.core import FLASH_START, BlockLengths, Segments, load, stack_bytes
+from hostkit.emulation.stm32.core import FLASH_BYTES, Core, Outcome, Segments
 from hostkit.emulation.stm32.i2c import I2cMaster
-from hostkit.emulation.stm32.nvic import THUMB, Nvic
+from hostkit.emulation.stm32.nvic import ControlBlock, Nvic
 from hostkit.emulation.stm32.pins import Lines, Port, Selector, Wires
-from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, Device, Peripheral, Timeline
+from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, Device, Peripheral
 from hostkit.emulation.stm32.timer import Timer
 from hostkit.emulation.stm32.usart import Transmitter
 from hostkit.emulation.virtual_sensor import VirtualSensor
@@ -17,11 +14,8 @@ from hostkit.errors import EmulationError
 PERIPHERALS_START, PERIPHERALS_BYTES = 0x40000000, 0x23000
 CORE_START, CORE_BYTES = 0xE000E000, 0x1000
 BLOCK_SHIFT = 10
-EXCEPTION_RETURN = 8
-ENDLESS = 0xFFFFFFFF
 TX_PIN, MARK_PIN = 9, 8
 EXTI9_5, TIM2, USART1 = 23, 28, 37
-IT_STATE = 0x0600FC00
 
 
 class Machine:
@@ -57,19 +51,17 @@ class Machine:
         self.link = bytearray()
         self.segments = Segments()
         self.sensor = sensor
-        self.time = Timeline()
-        self._instructions = 0
-        self._foreign_instructions = 0
-        self._interrupted_at = 0
+        self._core = Core(
+            image,
+            flash_bytes=FLASH_BYTES,
+            happen=self._let_happen,
+            read=self._read,
+            write=self._write,
+        )
+        self.time = self._core.state.time
+        self.time.ticks_per_instruction = 1
         self._begun_at: int | None = None
         self._sleeping = False
-        self._until = self._wake = 0
-        self._stopped = self._cleared = False
-        self._returns_to: int | None = None
-        self._begun = False
-        self._uc = load(image)
-        self._reset = self._uc.reg_read(arm.UC_ARM_REG_PC) & ~THUMB
-        self._lengths = BlockLengths(image)
         self._make_peripherals(receiver_baud, crystal_starts)
         self._wire()
 
@@ -93,7 +85,7 @@ class Machine:
             self._usart,
         )
         self._nvic = Nvic(
-            self._uc, FLASH_START, {EXTI9_5: self._lines, TIM2: self._timer, USART1: self._usart}
+            self._core, {EXTI9_5: self._lines, TIM2: self._timer, USART1: self._usart}
         )
 
     def _wire(self) -> None:
@@ -108,17 +100,15 @@ class Machine:
             (0x40013800, self._usart, (APB2ENR, 14)),
             (0x40021000, self._clocks, None),
             (0x40022000, flash, None),
+            (0xE000E000, self._nvic, None),
+            (0xE000EC00, ControlBlock(self._core, self._reset_requested), None),
         )
         self._places = {
-            start - PERIPHERALS_START >> BLOCK_SHIFT: (peripheral, gate)
+            start >> BLOCK_SHIFT: (peripheral, gate)
             for start, peripheral, gate in placed
         }
-        uc = self._uc
-        uc.mmio_map(PERIPHERALS_START, PERIPHERALS_BYTES, self._read, None, self._write, None)
-        uc.mmio_map(CORE_START, CORE_BYTES, self._read_core, None, self._write_core, None)
-        uc.hook_add(UC_HOOK_BLOCK, self._block)
-        uc.hook_add(UC_HOOK_INTR, self._exception)
-        uc.hook_add(UC_HOOK_BLOCK, self._began, None, self._reset, self._reset)
+        self._core.map(PERIPHERALS_START, PERIPHERALS_BYTES)
+        self._core.map(CORE_START, CORE_BYTES)
 
     # --- what the user sees ----------------------------------------------------------------------
 
@@ -130,7 +120,7 @@ class Machine:
     @property
     def stack_bytes(self) -> int:
         """Bytes of stack used so far: all above the longest run of paint that is left."""
-        return stack_bytes(self._uc)
+        return self._core.stack_bytes
 
     def sensor_moved(self) -> None:
         """Look at the sensor again after something was done to it from outside."""
@@ -145,9 +135,9 @@ class Machine:
         EmulationError
             If the firmware faults, sleeps for ever, or does what the model does not allow.
         """
-        self._until = self.time.now + int(seconds * TICK_HZ)
+        self.time.until = self.time.now + int(seconds * TICK_HZ)
         self._plan()
-        while self.time.now < self._until and not self.finished:
+        while self.time.now < self.time.until and not self.finished:
             if self._sleeping:
                 self._doze()
             else:
@@ -158,13 +148,18 @@ class Machine:
     def _plan(self) -> None:
         """Look at the requests, and at when the next thing happens."""
         self._nvic.update()
-        self._wake = min(self._until, *(device.due for device in self._devices))
+        wake = self.time.until
+        for device in self._devices:
+            if device.due < wake:
+                wake = device.due
+        self.time.wake = wake
 
     def _let_happen(self) -> None:
         """Let happen what is due, the earliest first."""
+        now = self.time.now
         while True:
-            device = min(self._devices, key=lambda d: d.due)
-            if device.due > self.time.now:
+            device = min(self._devices, key=_due)
+            if device.due > now:
                 break
             device.happen()
         self._plan()
@@ -174,96 +169,62 @@ class Machine:
         while not self._nvic.wakes:
             if min(device.due for device in self._devices) == NEVER:
                 raise EmulationError("the firmware sleeps for ever")
-            self.time.now = max(self.time.now, self._wake)
+            self.time.now = max(self.time.now, self.time.wake)
             self._let_happen()
-            if self.time.now >= self._until or self.finished:
+            if self.time.now >= self.time.until or self.finished:
                 return
         self._sleeping = False
 
     def _run_instructions(self) -> None:
-        uc = self._uc
-        if self._nvic.ready and (self._cleared or self._may_interrupt()):
-            self._interrupted_at = self._instructions
-            self._nvic.enter()
-        self._stopped = self._cleared = False
-        try:
-            uc.emu_start(uc.reg_read(arm.UC_ARM_REG_PC) | THUMB, ENDLESS)
-        except UcError as error:
-            where = uc.reg_read(arm.UC_ARM_REG_PC)
-            raise EmulationError(f"the firmware faults at {where:#010x}: {error}") from error
-        if self._returns_to is not None:
-            self._nvic.leave(self._returns_to)
-            self._returns_to = None
-            self._foreign_instructions += self._instructions - self._interrupted_at
-        elif not self._stopped:
+        outcome = self._core.run()
+        state = self._core.state
+        if outcome is Outcome.SLEEPS:
             self._sleeping = True
-
-    def _may_interrupt(self) -> bool:
-        """Tell whether nothing holds interrupts off; within an IT block they wait for its end."""
-        held = self._uc.reg_read(arm.UC_ARM_REG_PRIMASK) & 1
-        return not held and not self._uc.reg_read(arm.UC_ARM_REG_XPSR) & IT_STATE
-
-    def _block(self, uc: Uc, address: int, size: int, _data: object) -> None:
-        """Count the instructions of a block that begins, and stop before it if something waits."""
-        count = self._lengths[address, size]
-        self.time.now += count * self.time.ticks_per_instruction
-        self._instructions += count
-        if self.time.now < self._wake and not self._nvic.ready:
-            return
-        self._let_happen()
-        self._cleared = self._nvic.ready and self._may_interrupt()
-        if self._cleared or self.time.now >= self._until:
-            self._instructions -= count  # it will be counted again, once it is carried out
-            self._stopped = True
-            uc.emu_stop()
-
-    def _began(self, _uc: Uc, _address: int, _size: int, _data: object) -> None:
-        if self._begun:
-            raise EmulationError(f"the firmware jumped to its start after {self.time.now_s:.3f} s")
-        self._begun = True
-
-    def _exception(self, uc: Uc, number: int, _data: object) -> None:
-        where = uc.reg_read(arm.UC_ARM_REG_PC)
-        if number != EXCEPTION_RETURN:
-            raise EmulationError(f"the firmware faults at {where:#010x}: exception {number}")
-        self._returns_to = where
-        self._stopped = True
-        uc.emu_stop()
+        elif outcome is Outcome.FAULTS:
+            raise EmulationError(
+                f"the firmware faults at {state.fault_address:#010x}: exception {state.fault}"
+            )
+        elif outcome is Outcome.BEGINS_AGAIN:
+            raise EmulationError(
+                f"the firmware jumped to its start after {self.time.now_s:.3f} s"
+            )
+        elif outcome is Outcome.NO_CODE:
+            raise EmulationError(
+                f"the firmware runs at {state.fault_address:#010x}, where it has no code"
+            )
 
     # --- registers -------------------------------------------------------------------------------
 
-    def _find(self, offset: int) -> Peripheral | None:
-        """Return what answers at an offset; None for a peripheral that has no clock."""
-        found = self._places.get(offset >> BLOCK_SHIFT)
+    def _find(self, address: int) -> Peripheral | None:
+        """Return what answers at an address; None for a peripheral that has no clock."""
+        found = self._places.get(address >> BLOCK_SHIFT)
         if found is None:
-            raise EmulationError(
-                f"the firmware uses {PERIPHERALS_START + offset:#010x}, which is not modelled"
-            )
+            raise EmulationError(f"the firmware uses {address:#010x}, which is not modelled")
         peripheral, gate = found
         return peripheral if gate is None or self._clocks.clocked(*gate) else None
 
-    def _read(self, _uc: Uc, offset: int, _size: int, _data: object) -> int:
-        peripheral = self._find(offset)
+    def _read(self, address: int, _size: int) -> int:
+        peripheral = self._find(address)
         if peripheral is None:
             return 0
         if peripheral is self._i2c:
             if self._i2c.polled_in_vain():
                 self._wait()
-            value = self._i2c.read(offset & 0x3FF)
+            value = self._i2c.read(address & 0x3FF)
             self._plan()
             return value
-        return peripheral.read(offset & 0x3FF)
+        return peripheral.read(address & 0x3FF)
 
     def _wait(self) -> None:
         """Let a program that polls in vain wait for the next event: the time passes, unspent."""
         self.time.now = max(self.time.now, min(d.due for d in self._devices))
         self._let_happen()
 
-    def _write(self, _uc: Uc, offset: int, _size: int, value: int, _data: object) -> None:
-        peripheral = self._find(offset)
+    def _write(self, address: int, _size: int, value: int) -> None:
+        peripheral = self._find(address)
         if peripheral is None:
             return
-        peripheral.write(offset & 0x3FF, value)
+        peripheral.write(address & 0x3FF, value)
         if peripheral is self._port_a:
             self._usart.wired = self._port_a.peripheral(TX_PIN)
             self._mark(bool(self._port_a.output >> MARK_PIN & 1))
@@ -271,17 +232,18 @@ class Machine:
             self._wires.moved_by_program()
         self._plan()
 
+    def _reset_requested(self) -> None:
+        raise EmulationError("the firmware resets itself, as it does after a fault")
+
     def _mark(self, begins: bool) -> None:
-        own = self._instructions - self._foreign_instructions
+        state = self._core.state
+        own = state.instructions - state.foreign_instructions
         if begins and self._begun_at is None:
             self._begun_at = own
         elif not begins and self._begun_at is not None:
             self.segments.add(own - self._begun_at)
             self._begun_at = None
 
-    def _read_core(self, _uc: Uc, offset: int, _size: int, _data: object) -> int:
-        return self._nvic.read(offset)
 
-    def _write_core(self, _uc: Uc, offset: int, _size: int, value: int, _data: object) -> None:
-        self._nvic.write(offset, value)
-        self._plan()
+def _due(device: Device) -> int:
+    return device.due
