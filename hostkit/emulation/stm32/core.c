@@ -258,6 +258,7 @@ void hk_core_update(core_t *core)
 /* Stop as soon as the instruction that is carried out has ended. */
 void hk_core_stop(core_t *core)
 {
+    core->fault_address = reg(core, UC_ARM_REG_PC);
     stop(core, core->failed ? FAILED : RESTARTS);
 }
 
@@ -267,6 +268,7 @@ void hk_core_enter_fault(core_t *core)
     enter(core, HARD_FAULT);
     core->active = FAULT_ACTIVE;
     core->ready = 0;
+    core->cleared = false;
 }
 
 static uint64_t on_read(uc_engine *uc, uint64_t offset, unsigned bytes, void *data)

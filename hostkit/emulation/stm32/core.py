@@ -164,7 +164,7 @@ class Core:
         self._require(self._c.hk_core_open(self._self, flash_bytes, RAM_BYTES))
         weakref.finalize(self, self._c.hk_core_close, self._self)
         self.poke(FLASH_START, image.ljust(flash_bytes, ERASED))
-        self.poke(RAM_START, bytes([PAINT]) * RAM_BYTES)
+        self.paint()
         self.reset()
 
     def map(self, start: int, size: int) -> None:
@@ -180,6 +180,10 @@ class Core:
         buffer = ctypes.create_string_buffer(count)
         self._require(self._c.hk_core_peek(self._self, address, buffer, count))
         return buffer.raw
+
+    def paint(self) -> None:
+        """Fill the RAM with what tells unused stack, as a new supply voltage would with anything."""
+        self.poke(RAM_START, bytes([PAINT]) * RAM_BYTES)
 
     def reset(self) -> None:
         """Stand before the first instruction again; memory stays."""
@@ -207,9 +211,15 @@ class Core:
         """
         outcome = Outcome(self._c.hk_core_run(self._self))
         error, self._error = self._error, None
+        self.state.failed = 0
         if error is not None:
             raise error
         return outcome
+
+    @property
+    def fault_address(self) -> int:
+        """Where the last fault was."""
+        return self.state.fault_address
 
     def message(self, number: int) -> str:
         """Return what an error of Unicorn means."""

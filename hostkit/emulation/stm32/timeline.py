@@ -1,9 +1,10 @@
-"""Simulated time: what has passed, what an instruction takes, and what a peripheral is."""
+"""Simulated time, and what a peripheral is."""
 
 import ctypes
 from typing import Protocol
 
 from hostkit.emulation.virtual_sensor import NEVER as NEVER_NS
+from hostkit.errors import EmulationError
 
 TICK_HZ = 72_000_000
 """Time is counted in periods of the fastest clock."""
@@ -51,6 +52,10 @@ class Timeline(ctypes.Structure):
     def now_s(self) -> float:
         """Seconds since the start."""
         return self.now / TICK_HZ
+
+
+class BusFault(EmulationError):
+    """An access that the bus refuses; the core takes it for a fault of the program."""
 
 
 def tick_at(time_ns: int) -> int:
