@@ -60,6 +60,13 @@ def copied(folder: Path, destination: Path) -> Path:
     return destination
 
 
+def own_main(folder: Path, destination: Path, program: str) -> Path:
+    """Copy generated code with another main.c; it is not built."""
+    copied(folder, destination)
+    (destination / "main.c").write_text(program, encoding="ascii")
+    return destination
+
+
 def changed(file: Path, old: str, new: str) -> None:
     text = file.read_text(encoding="ascii")
     assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {file}"
