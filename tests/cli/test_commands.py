@@ -143,6 +143,21 @@ def test_generate_keeps_the_options_and_states_the_budget(hostkit, design: str) 
     )
 
 
+def test_emulate_takes_the_options_or_those_of_the_code(
+    hostkit, recording: str, design: str
+) -> None:
+    call = ("emulate", design, "--target", "host", "--recording", recording)
+    hostkit("generate", design, "--target", "host", "--out", "fw", "--message", "TILT_SAMPLE=0")
+    code, _, err = hostkit(*call, "--code", "fw", "--system-id", "7")
+    assert (code, "options that it was made with" in err) == (2, True)
+    for options in (("--code", "fw"), ("--message", "TILT_SAMPLE=0")):
+        code, _, err = hostkit(*call, *options)
+        assert (code, "TILT_SAMPLE is off" in err) == (1, True)
+    document = json.loads(hostkit(*call, "--system-id", "7", "--json")[1])
+    assert (document["mismatches"], document["beyond_tolerance"]) == (0, None)
+    assert document["tolerance_rad"] is None
+
+
 def test_edited_design_is_said_to_be_another(hostkit, recording: str, design: str) -> None:
     text = Path(design).read_text()
     eta = json.loads(text)["parameters"]["eta"]["value"]
