@@ -20,12 +20,17 @@ from xml.etree import ElementTree
 from hostkit.errors import RenderError
 from hostkit.records import GeneratedFile
 
-STANDARD_MESSAGES = ("HEARTBEAT", "ATTITUDE", "STATUSTEXT")
+STANDARD_MESSAGES = (
+    *("HEARTBEAT", "SYS_STATUS", "STATUSTEXT"),
+    *("ATTITUDE", "SCALED_IMU", "RAW_IMU", "HIGHRES_IMU"),
+)
 STANDARD_DEFINITIONS = ("minimal.xml", "standard.xml", "common.xml")
 HEADER_FOLDER = "mavlink"
 DIALECT = "hostkit"
 FRAME_OVERHEAD_BYTES = 12
 """Header and checksum of an unsigned MAVLink 2 frame."""
+SIGNATURE_BYTES = 13
+"""What a signature adds to a frame."""
 HIDDEN_WORDS = 2
 """Words that ``TILT_SAMPLE`` has for the state of a filter beside its angles."""
 HIDDEN_WORD_BYTES = 4

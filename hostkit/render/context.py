@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.errors import DesignError
+from hostkit.errors import DesignError, RenderError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
@@ -12,6 +12,7 @@ from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.part import Identity, Range, Register, RegisterWrite
@@ -101,6 +102,7 @@ class RenderContext:
     uses_arcsin: bool
     sensor: SensorContext
     link: LinkPlan
+    options: FirmwareOptions
     target: Target
 
     def banner(self, template: str) -> str:
@@ -111,14 +113,19 @@ class RenderContext:
         )
 
 
-def render_context(design: FilterDesign, target: Target) -> RenderContext:
+def render_context(
+    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+) -> RenderContext:
     """Lower a design and lay out what templates need.
 
     Raises
     ------
     HostkitError
-        If the design cannot be lowered, or does not fit the target's sensor rate or link.
+        If the design cannot be lowered, or does not fit the target's sensor rate or link, or
+        there are options for a target that runs no firmware.
     """
+    if target.kind != "mcu" and options != DEFAULT_OPTIONS:
+        raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
     spec = FILTERS[design.filter].lower(design)
     return RenderContext(
         design=_design_context(design),
@@ -133,7 +140,8 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target, hidden_words=len(spec.hidden)),
+        link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
+        options=options,
         target=target,
     )
 
