@@ -12,11 +12,29 @@ COMPONENT_ID = 1
 MAV_TYPE_GENERIC = 0
 MAV_AUTOPILOT_GENERIC = 0
 HEARTBEAT_MS = 1000
+STATUS_MS = 1000
 ATTITUDE_MAX_HZ = 50.0
 BITS_PER_BYTE = 10
 """Start bit, eight data bits, stop bit."""
 USABLE_SHARE = 0.8
 """The rest is left for events."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamedMessage:
+    """One message that goes out again and again.
+
+    Attributes
+    ----------
+    interval_us
+        Time between two of them, microseconds; 0 is off.
+    frame_bytes
+        Its bytes on the link at most.
+    """
+
+    name: str
+    interval_us: int
+    frame_bytes: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,8 +46,8 @@ class LinkPlan:
     vehicle_type: int
     autopilot: int
     baud: int
-    heartbeat_ms: int
-    attitude_every: int
+    usable_bytes_s: int
+    messages: tuple[StreamedMessage, ...]
     bytes_per_s: int
 
 
@@ -52,12 +70,26 @@ def link_plan(rate_hz: float, target: Target, *, hidden_words: int = 0) -> LinkP
             f"TILT_SAMPLE carries {HIDDEN_WORDS}"
         )
     attitude_every = max(1, math.ceil(rate_hz / ATTITUDE_MAX_HZ))
-    messages = (
-        (sample_bytes(hidden_words), rate_hz),
-        (payload_bytes("ATTITUDE"), rate_hz / attitude_every),
-        (payload_bytes("HEARTBEAT"), 1000.0 / HEARTBEAT_MS),
+    period_us = round(1e6 / rate_hz)
+    intervals_us = {
+        "TILT_SAMPLE": period_us,
+        "ATTITUDE": attitude_every * period_us,
+        "SCALED_IMU": 0,
+        "RAW_IMU": 0,
+        "HIGHRES_IMU": 0,
+        "SYS_STATUS": STATUS_MS * 1000,
+        "HEARTBEAT": HEARTBEAT_MS * 1000,
+    }
+    messages = tuple(
+        StreamedMessage(
+            name=name,
+            interval_us=interval_us,
+            frame_bytes=FRAME_OVERHEAD_BYTES
+            + (sample_bytes(hidden_words) if name == "TILT_SAMPLE" else payload_bytes(name)),
+        )
+        for name, interval_us in intervals_us.items()
     )
-    needed = sum(hz * (payload + FRAME_OVERHEAD_BYTES) for payload, hz in messages)
+    needed = sum(1e6 / m.interval_us * m.frame_bytes for m in messages if m.interval_us)
     usable = USABLE_SHARE * target.baud / BITS_PER_BYTE
     if target.baud and needed > usable:
         fits_hz = rate_hz * usable / needed
@@ -71,7 +103,7 @@ def link_plan(rate_hz: float, target: Target, *, hidden_words: int = 0) -> LinkP
         vehicle_type=MAV_TYPE_GENERIC,
         autopilot=MAV_AUTOPILOT_GENERIC,
         baud=target.baud,
-        heartbeat_ms=HEARTBEAT_MS,
-        attitude_every=attitude_every,
+        usable_bytes_s=int(usable),
+        messages=messages,
         bytes_per_s=math.ceil(needed),
     )
