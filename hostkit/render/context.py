@@ -13,6 +13,7 @@ from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.part import Identity, Range, Register, RegisterWrite
 from hostkit.spec import FixedPointSpec
@@ -93,6 +94,7 @@ class RenderContext:
     design: DesignContext
     spec: FixedPointSpec
     filter: FilterContext
+    run_time: RunTimeContext
     arctan: ArctanContext
     root_fraction_bits: int
     stretch_fraction_bits: int
@@ -124,7 +126,8 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
     return RenderContext(
         design=_design_context(design),
         spec=spec,
-        filter=filter_context(spec),
+        filter=filter_context(spec, design.rate_hz),
+        run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
