@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "hk_design.h"
+#include "hk_flash.h"
 #include "hk_hal.h"
 
 #define HK_MS UINT32_C(1000)
@@ -562,11 +563,11 @@ const char *hk_mpu6050_part(uint8_t who_am_i)
 {
 #define HK_CASE(value, name, accepted, warned, own_accel_filter) \
     case value: \
-        return name;
+        return HK_TEXT(name);
     switch (who_am_i) {
         HK_MPU6050_IDENTITIES(HK_CASE)
     default:
-        return "unknown part";
+        return HK_TEXT("unknown part");
     }
 #undef HK_CASE
 }

@@ -84,7 +84,7 @@ hk_mpu6050_event_t hk_mpu6050_poll(hk_mpu6050_t *sensor, uint32_t now_us,
 /* True if the next step needs time to pass, or a sample to come. */
 bool hk_mpu6050_waiting(const hk_mpu6050_t *sensor);
 
-/* The part of that identity, for messages. */
+/* The part of that identity, for messages: a text in flash. */
 const char *hk_mpu6050_part(uint8_t who_am_i);
 
 /* No answer, or a bus that reads all zeros or all ones, is a fault of the bus, not another part. */

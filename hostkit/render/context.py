@@ -1,5 +1,6 @@
 """What templates see: records whose fields are ready to be placed."""
 
+import re
 from dataclasses import dataclass
 
 from hostkit import __version__
@@ -27,6 +28,7 @@ class DesignContext:
     digest: str
     digest_bytes: tuple[int, ...]
     version: str
+    version_number: int
     rate_hz: str
     period_us: int
 
@@ -56,6 +58,7 @@ class SensorContext:
     gyro_ranges: tuple[RangeContext, ...]
     accel_ranges: tuple[RangeContext, ...]
     rad_s_per_count: str
+    m_s2_per_count: str
     device_reset: int = mpu6050.DEVICE_RESET
     sleep: int = mpu6050.SLEEP
     clock_pll: int = mpu6050.CLOCK_PLL_GYRO_X
@@ -152,9 +155,16 @@ def _design_context(design: FilterDesign) -> DesignContext:
         digest=name,
         digest_bytes=tuple(bytes.fromhex(name)),
         version=__version__,
+        version_number=_version_number(__version__),
         rate_hz=repr(design.rate_hz),
         period_us=round(1e6 * design.period_s),
     )
+
+
+def _version_number(version: str) -> int:
+    """Return a version as AUTOPILOT_VERSION has it: a byte each for major, minor, patch and kind."""
+    parts = [int(part) for part in re.findall(r"\d+", version)[:3]]
+    return int.from_bytes(bytes([*parts, 0, 0, 0, 0][:4]), "big")
 
 
 def _mounting_context(mounting: Mounting) -> tuple[MountingContext, ...]:
@@ -181,6 +191,7 @@ def _sensor_context(design: FilterDesign) -> SensorContext:
         gyro_ranges=tuple(_range(r, sensor.gyro_rad_s_per_count(r)) for r in sensor.gyro_ranges),
         accel_ranges=tuple(_range(r, sensor.accel_m_s2_per_count(r)) for r in sensor.accel_ranges),
         rad_s_per_count=repr(sensor.rad_s_per_count(design.sensor)),
+        m_s2_per_count=repr(sensor.m_s2_per_count(design.sensor)),
     )
 
 
