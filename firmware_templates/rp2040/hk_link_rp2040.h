@@ -3,6 +3,6 @@
 #define HK_LINK_RP2040_H
 
 /* Set the UART up; it must have been let out of reset. */
-void hk_link_init(void);
+void hk_uart_init(void);
 
 #endif
