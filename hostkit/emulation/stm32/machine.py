@@ -133,9 +133,7 @@ class Machine:
         self._port_a, self._port_b, self._lines = Port(), Port(), Lines()
         self._wires = Wires(time, self._port_b, self._lines, sensor)
         self._i2c = I2cMaster(time, self._clocks, self._wires, sensor)
-        self._usart = Usart(
-            time, self._clocks, peer_baud=self._peer_baud, heard=self.link.append
-        )
+        self._usart = Usart(time, self._clocks, peer_baud=self._peer_baud, heard=self.link.append)
         self._sender.arrive = self._usart.arrive
         self._flash = Flash(time, self._clocks, self.store, lambda: self._reset(BY_POWER))
         self._watchdog = Watchdog(time, self._lsi_hz, lambda: self._reset(BY_WATCHDOG))
