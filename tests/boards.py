@@ -61,8 +61,8 @@ def copied(folder: Path, destination: Path) -> Path:
 
 
 def own_main(folder: Path, destination: Path, program: str) -> Path:
-    """Copy generated code with another main.c; it is not built."""
-    copied(folder, destination)
+    """Copy generated code, and what was built from it, with another main.c; build it again."""
+    shutil.copytree(folder, destination)
     (destination / "main.c").write_text(program, encoding="ascii")
     return destination
 
