@@ -41,7 +41,7 @@ static uint8_t put_count;
 /* --- In RAM ---------------------------------------------------------------------------------- */
 
 /* Erase the sector at an offset, or program the page there. Nothing in here may be in the flash. */
-__attribute__((section(".ram_code"), noinline, long_call)) static void
+__attribute__((section(".ram_code"), noinline)) static void
 change_flash(const hk_rom_t *rom, uint32_t offset, const uint8_t *bytes)
 {
     const hk_function_t read_again = (hk_function_t)((uintptr_t)loader | 1U);

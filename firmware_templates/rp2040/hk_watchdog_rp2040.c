@@ -4,11 +4,16 @@
 #include "hk_hal.h"
 #include "hk_rp2040.h"
 
-/* Longer than the longest erase of a sector of the flash, 400 ms. */
 #define HK_WATCHDOG_US UINT32_C(1500000)
 
-/* The counter goes down twice per microsecond: erratum RP2040-E1 of the data sheet. */
+/* Nobody can feed it while a sector of the flash is erased. */
+#define HK_ERASE_MAX_US UINT32_C(400000)
+typedef char hk_watchdog_outlasts_an_erase[HK_WATCHDOG_US > 2U * HK_ERASE_MAX_US ? 1 : -1];
+
+/* The counter has 24 bits and goes down twice per microsecond: erratum RP2040-E1 of the data
+ * sheet. */
 #define HK_WATCHDOG_COUNTS (2U * HK_WATCHDOG_US)
+typedef char hk_watchdog_fits_its_counter[HK_WATCHDOG_COUNTS <= UINT32_C(0xFFFFFF) ? 1 : -1];
 
 /* What a scratch register says after a reset by the watchdog: it survives that, but no other. The
  * boot ROM too resets the chip by the watchdog, when it has loaded an image. */

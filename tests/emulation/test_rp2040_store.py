@@ -21,6 +21,7 @@ from designs import design
 from hostkit.emulation import rp2040_board
 from hostkit.emulation.board import BoardRun
 from hostkit.errors import EmulationError
+from hostkit.records import FilterDesign
 
 SECTOR = 4096
 SLOT = 128
@@ -212,6 +213,17 @@ SAVES = """
 """
 
 
+def saving(folder: Path, code: FilterDesign) -> Path:
+    """The application, which changes the store once, 0.8 s after it has started."""
+    generated("rp2040", folder, code)
+    changed(folder / "main.c", "        hk_hal_watchdog_feed();\n",
+            "        hk_hal_watchdog_feed();\n" + SAVES)  # fmt: skip
+    changed(folder / "main.c", "    static hk_app_t app;\n",
+            "    static hk_app_t app;\n    bool saved = false;\n")  # fmt: skip
+    rp2040_board.build(folder)
+    return folder
+
+
 @pytest.mark.parametrize(
     ("rate_hz", "gap_rows", "restarts", "texts"),
     [
@@ -225,14 +237,8 @@ def test_a_change_of_the_store_costs_samples_and_no_more(
 ) -> None:
     require_or_skip(*PICO_TOOLS)
     code = design(rate_hz=rate_hz)
-    folder = generated("rp2040", tmp_path / "code", code)
-    changed(folder / "main.c", "        hk_hal_watchdog_feed();\n",
-            "        hk_hal_watchdog_feed();\n" + SAVES)  # fmt: skip
-    changed(folder / "main.c", "    static hk_app_t app;\n",
-            "    static hk_app_t app;\n    bool saved = false;\n")  # fmt: skip
-    rp2040_board.build(folder)
     feels = stimulus(round(2 * rate_hz), code)
-    done = rp2040_board.run(folder, feels)
+    done = rp2040_board.run(saving(tmp_path / "code", code), feels)
     heard = hear(done)
     rows = {tuple(row): i for i, row in enumerate(expected_counts(feels, code).accel.tolist())}
     played = [rows[tuple(sample.accel)] for sample in heard.samples]
@@ -242,3 +248,22 @@ def test_a_change_of_the_store_costs_samples_and_no_more(
     assert sum(sample.flags & RESTARTED for sample in heard.samples) == 1 + restarts
     assert [text.text for text in heard.of("STATUSTEXT")] == texts
     assert "resets" not in dict(done.faults)
+
+
+def test_the_application_starts_anew_after_the_supply_has_failed(tmp_path: Path) -> None:
+    require_or_skip(*PICO_TOOLS)
+    feels = replace(stimulus(300), power_cut_after=1)
+    done = rp2040_board.run(saving(tmp_path / "code", design()), feels)
+    sequences = [sample.sequence for sample in hear(done).samples]
+    begins = [i for i, sequence in enumerate(sequences) if sequence == 0]
+    assert dict(done.faults)["resets"] == 1
+    assert len(begins) == 2
+    assert sequences == [*range(begins[1]), *range(len(sequences) - begins[1])]
+    assert begins[1] < 80 < len(sequences) - begins[1]
+    assert done.store[:2] == b"\x42\xff"
+
+
+def test_a_change_begins_with_a_fed_watchdog(writer: Path, tmp_path: Path) -> None:
+    waits = "    while (hk_hal_time_us() < 1480000U) {\n    }\n    if (first != 0x80U) {"
+    folder = rebuilt(writer, tmp_path / "code", "main.c", "    if (first != 0x80U) {", waits)
+    assert "resets" not in dict(run(folder).faults)
