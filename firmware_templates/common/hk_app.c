@@ -31,7 +31,7 @@ static uint64_t full_time_us(const hk_app_t *app, uint32_t event_us)
 
 void hk_app_notice(hk_app_t *app, hk_notice_t notice)
 {
-    app->notices |= (uint8_t)(1U << notice);
+    app->notices = (uint8_t)(app->notices | (1U << notice));
 }
 
 /* The heartbeat tells a change at once. */

@@ -58,9 +58,9 @@ void hk_receiver_init(hk_receiver_t *receiver)
     (void)memset(receiver, 0, sizeof *receiver);
 }
 
-static void take_header(hk_receiver_t *receiver, uint8_t byte)
+static void take_header(hk_receiver_t *receiver, uint16_t place, uint8_t byte)
 {
-    switch (receiver->place) {
+    switch (place) {
     case AT_LENGTH:
         receiver->length = byte;
         receiver->crc = HK_CRC_START;
@@ -121,7 +121,7 @@ static bool take_byte(hk_receiver_t *receiver, uint8_t byte)
     const uint16_t place = receiver->place++;
 
     if (place < AT_PAYLOAD) {
-        take_header(receiver, byte);
+        take_header(receiver, place, byte);
     } else if (place == end) {
         receiver->crc_low = byte;
         return false;

@@ -4,12 +4,16 @@
  * it. So all changes are told at once, when the last sample that was made before has left. */
 #include "hk_settings.h"
 
+#include <string.h>
+
 #include "hk_command.h"
 #include "hk_telemetry.h"
 
 /* Memory wears out: it is written when nobody has changed anything for a while. */
 #define HK_QUIET_US UINT32_C(3000000)
 #define HK_LIST_US  UINT32_C(20000)
+
+#define HK_VALUE_BYTES ((uint8_t)MAVLINK_MSG_ID_PARAM_VALUE_LEN)
 
 #define HK_ALL_PARAMETERS ((uint8_t)((1U << HK_PARAMETERS) - 1U))
 typedef char hk_parameters_fit_mask[HK_PARAMETERS <= 8U ? 1 : -1];
@@ -48,7 +52,7 @@ static void touch(hk_app_t *app)
 
 void hk_settings_tell(hk_app_t *app, uint8_t place)
 {
-    app->announce |= (uint8_t)(1U << place);
+    app->announce = (uint8_t)(app->announce | (1U << place));
 }
 
 void hk_settings_set(hk_app_t *app, uint8_t place, float value)
@@ -121,7 +125,7 @@ static void announce(hk_app_t *app)
 
     for (place = 0U; place < HK_PARAMETERS; place++) {
         if ((app->announce & (1U << place)) != 0U) {
-            needed = (uint8_t)(needed + MAVLINK_MSG_ID_PARAM_VALUE_LEN + HK_FRAME_OVERHEAD);
+            needed = (uint8_t)(needed + (HK_VALUE_BYTES + HK_FRAME_OVERHEAD));
         }
     }
     if (sample_waits || !hk_link_has_room((uint8_t)(needed - HK_FRAME_OVERHEAD))) {
@@ -144,8 +148,8 @@ static void go_on_listing(hk_app_t *app)
     }
     if (app->list_place == HK_NO_PARAMETER
         || (uint32_t)app->now_us - app->listed_us < HK_LIST_US
-        || !hk_link_has_room(MAVLINK_MSG_ID_PARAM_VALUE_LEN + MAVLINK_MSG_ID_TILT_SAMPLE_LEN
-                             + HK_FRAME_OVERHEAD)) {
+        || !hk_link_has_room(HK_VALUE_BYTES + HK_FRAME_OVERHEAD
+                             + MAVLINK_MSG_ID_TILT_SAMPLE_LEN)) {
         return;
     }
     (void)hk_telemetry_parameter(app, app->list_place);
