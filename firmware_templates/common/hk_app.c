@@ -2,6 +2,7 @@
 #include "hk_app.h"
 
 #include "hk_design.h"
+#include "hk_flash.h"
 #include "hk_hal.h"
 
 #define HK_HEX_DIGITS "0123456789ABCDEF"
@@ -49,6 +50,16 @@ static void put(hk_line_t *line, const char *text)
     }
 }
 
+static void put_flash(hk_line_t *line, const char *text)
+{
+    char character = (char)hk_flash_u8(text);
+
+    for (; character != '\0'; character = (char)hk_flash_u8(text)) {
+        put_character(line, character);
+        text++;
+    }
+}
+
 static void put_hex(hk_line_t *line, uint8_t value)
 {
     put(line, "0x");
@@ -88,6 +99,10 @@ static const char *what_happened(hk_mpu6050_kind_t kind)
         return "frozen, restart";
     case HK_MPU6050_VARIANT:
         return "WHO_AM_I ";
+    case HK_MPU6050_OVERFLOW:
+        return "FIFO overflow";
+    case HK_MPU6050_MISALIGNED:
+        return "FIFO misaligned";
     case HK_MPU6050_TRANSFER:
     case HK_MPU6050_KINDS:
         break;
@@ -97,7 +112,8 @@ static const char *what_happened(hk_mpu6050_kind_t kind)
 
 static bool is_grave(hk_mpu6050_kind_t kind)
 {
-    return kind != HK_MPU6050_TORN && kind != HK_MPU6050_LOST_READY && kind != HK_MPU6050_VARIANT;
+    return kind != HK_MPU6050_TORN && kind != HK_MPU6050_LOST_READY && kind != HK_MPU6050_VARIANT
+           && kind != HK_MPU6050_OVERFLOW && kind != HK_MPU6050_MISALIGNED;
 }
 
 /* One line: what happened, what was found, and how often so far. */
@@ -111,7 +127,7 @@ static bool tell(hk_app_t *app, hk_mpu6050_kind_t kind)
     if (kind == HK_MPU6050_VARIANT) {
         put_hex(&line, sensor->who_am_i);
         put(&line, " taken for ");
-        put(&line, hk_mpu6050_part(sensor->who_am_i));
+        put_flash(&line, hk_mpu6050_part(sensor->who_am_i));
     } else {
         if (kind == HK_MPU6050_REGISTER) {
             put_hex(&line, sensor->bad_register);
@@ -195,6 +211,7 @@ static void poll_sensor(hk_app_t *app)
     case HK_MPU6050_REFUSAL:
         refuse(app);
         break;
+    case HK_MPU6050_SELF_TESTED:
     case HK_MPU6050_NOTHING:
         break;
     }

@@ -21,7 +21,8 @@
 
 /* Which samples the sensor plays.
  *
- * Until data-ready is enabled the sensor shows the row that comes next. From the first sample after
+ * Until data-ready is enabled (and, where the FIFO is on, until something is let into it) the sensor
+ * shows the row that comes next. From the first sample after
  * the enabling on, that row comes settle times more, and then the rows follow, one per sample. At
  * the end of the table the sensor stops producing samples, or starts again with row 0. A driver
  * that drops exactly settle samples therefore sees every row once, however often it restarts. */

@@ -134,6 +134,7 @@ static bool write_acting(hk_virtual_mpu6050_t *sensor, uint8_t address, uint8_t 
         set_range(sensor, address, value);
         return true;
     case HK_REG_INT_ENABLE:
+    case HK_REG_FIFO_EN:
         sensor->reg[address] = value;
         hk_virtual_enable_replay(sensor);
         return true;
@@ -143,6 +144,7 @@ static bool write_acting(hk_virtual_mpu6050_t *sensor, uint8_t address, uint8_t 
         return true;
     case HK_REG_USER_CTRL:
         hk_virtual_write_user_control(sensor, value);
+        hk_virtual_enable_replay(sensor);
         return true;
     case HK_REG_FIFO_R_W:
         if (hk_virtual_fifo_enabled(sensor)) {
@@ -161,7 +163,6 @@ void hk_virtual_write_register(hk_virtual_mpu6050_t *sensor, uint8_t address, ui
         return;
     }
     switch (address) {
-    case HK_REG_FIFO_EN:
     case HK_REG_SELF_TEST_X:
     case HK_REG_SELF_TEST_Y:
     case HK_REG_SELF_TEST_Z:

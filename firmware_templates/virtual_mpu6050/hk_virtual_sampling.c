@@ -109,14 +109,17 @@ static bool data_ready_enabled(const hk_virtual_mpu6050_t *sensor)
     return (sensor->reg[HK_REG_INT_ENABLE] & HK_INT_DATA_READY) != 0U;
 }
 
+/* The table begins with data-ready and, where the FIFO is on, with something to enter it; it pauses
+ * without data-ready only. */
 void hk_virtual_enable_replay(hk_virtual_mpu6050_t *sensor)
 {
-    const bool enabled = data_ready_enabled(sensor);
+    const bool enters = !hk_virtual_fifo_enabled(sensor) || sensor->reg[HK_REG_FIFO_EN] != 0U;
+    const bool begins = data_ready_enabled(sensor) && enters && !sensor->replay.running;
 
-    if (enabled && !sensor->replay.running) {
+    if (begins) {
         sensor->replay.lead_in_left = sensor->replay.settle;
     }
-    sensor->replay.running = enabled;
+    sensor->replay.running = data_ready_enabled(sensor) && (begins || sensor->replay.running);
 }
 
 /* Move the waiting burst into the registers and raise data-ready. */
