@@ -8,8 +8,9 @@
 #define MAVLINK_NO_SIGNATURE_CHECK
 #define MAVLINK_MAX_PAYLOAD_LEN 64
 
-/* Angle brackets, so that -isystem applies: the generated headers do not stand strict warnings. */
-#include <hostkit/mavlink.h>
+/* The generated headers do not stand strict warnings. */
+#pragma GCC system_header
+#include "mavlink/hostkit/mavlink.h"
 
 typedef char hk_payloads_fit[(MAVLINK_MSG_ID_TILT_SAMPLE_LEN <= MAVLINK_MAX_PAYLOAD_LEN
                               && MAVLINK_MSG_ID_STATUSTEXT_LEN <= MAVLINK_MAX_PAYLOAD_LEN)
