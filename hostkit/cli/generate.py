@@ -51,7 +51,7 @@ def generate(design_file: Path, target_name: str, out: Path, check: bool, as_jso
     design, target = read_design(design_file), TARGETS[target_name]
     options = chosen_options() or (_written_options(out) if check else DEFAULT_OPTIONS)
     link = None if target.kind == "fpga" else link_of(design, target, options)
-    files = render_all(design, target, options)
+    files = render_all(design, target, options, folder=out)
     stale = stale_files(files, out) if check else write(files, out)
     if as_json:
         emit_json(

@@ -1,5 +1,6 @@
 """From a design to files in a folder: render, compare, write."""
 
+import re
 from dataclasses import fields
 from pathlib import Path
 
@@ -15,6 +16,9 @@ from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.targets import TARGETS, Target
 
 DESIGN = "design.json"
+SKETCH = "arduino/sketch.ino.j2"
+SKETCH_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,61}[A-Za-z0-9_-]|[A-Za-z0-9_]")
+"""What the sketch specification of Arduino allows: up to 63 characters, no dot at the end."""
 
 
 def render_target(
@@ -47,9 +51,19 @@ def render_target(
 
 
 def generate(
-    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+    design: FilterDesign,
+    target: Target,
+    options: FirmwareOptions = DEFAULT_OPTIONS,
+    *,
+    folder: Path | None = None,
 ) -> tuple[GeneratedFile, ...]:
     """Return everything that `hostkit generate` writes: code, MAVLink headers, design, manifest.
+
+    Parameters
+    ----------
+    folder
+        Where it will be written. An Arduino sketch has the name of its folder, so without one, or
+        with a name that the Arduino IDE does not allow, there is none.
 
     Raises
     ------
@@ -59,11 +73,23 @@ def generate(
     files = list(render_target(design, target, options))
     if target.kind == "mcu":
         files.extend(c_headers())
+    files.extend(_sketch(design, target, options, folder))
     files.append(GeneratedFile(path=DESIGN, content=design_text(design)))
     files.append(
         GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files))
     )
     return _sorted_unique(files)
+
+
+def _sketch(
+    design: FilterDesign, target: Target, options: FirmwareOptions, folder: Path | None
+) -> tuple[GeneratedFile, ...]:
+    name = "" if folder is None else folder.resolve().name
+    if not target.arduino or not SKETCH_NAME.fullmatch(name):
+        return ()
+    banner = render_context(design, target, options).banner(SKETCH)
+    text = environment(template_root(target.kind)).get_template(SKETCH).render(banner=banner)
+    return (GeneratedFile(path=f"{name}.ino", content=_checked(text, SKETCH)),)
 
 
 def _checked(text: str, template: str) -> str:

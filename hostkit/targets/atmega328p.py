@@ -15,4 +15,5 @@ ATMEGA328P = Target(
     clock_hz=16_000_000,
     baud=500_000,
     uart=UartClock(tick_hz=16e6 / 8, least=1, most=4096, tolerance=0.025),
+    arduino=True,
 )

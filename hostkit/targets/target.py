@@ -23,6 +23,8 @@ class Target:
         Rate of the telemetry link if no other is asked for, bit/s.
     uart
         How the port of that link makes a rate; None where nothing is divided.
+    arduino
+        Whether the Arduino IDE can build the code, so that it gets a sketch.
     """
 
     name: str
@@ -32,3 +34,4 @@ class Target:
     clock_hz: int = 0
     baud: int = 0
     uart: UartClock | None = None
+    arduino: bool = False
