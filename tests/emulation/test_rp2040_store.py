@@ -263,7 +263,14 @@ def test_the_application_starts_anew_after_the_supply_has_failed(tmp_path: Path)
     assert done.store[:2] == b"\x42\xff"
 
 
+LATE = """
+    while (hk_hal_time_us() < 1480000U) {
+        hk_hal_idle();
+    }
+"""
+
+
 def test_a_change_begins_with_a_fed_watchdog(writer: Path, tmp_path: Path) -> None:
-    waits = "    while (hk_hal_time_us() < 1480000U) {\n    }\n    if (first != 0x80U) {"
-    folder = rebuilt(writer, tmp_path / "code", "main.c", "    if (first != 0x80U) {", waits)
+    begin = "    if (first != 0x80U) {"
+    folder = rebuilt(writer, tmp_path / "code", "main.c", begin, LATE + begin)
     assert "resets" not in dict(run(folder).faults)
