@@ -83,7 +83,7 @@ void hk_hal_init(void)
     hk_watchdog_init();
     hk_reset_hold(HK_RESET_TIMER | HK_RESET_UART0 | HK_RESET_IO_BANK0 | HK_RESET_PADS_BANK0);
     hk_reset_release(HK_RESET_TIMER | HK_RESET_UART0 | HK_RESET_IO_BANK0 | HK_RESET_PADS_BANK0);
-    hk_link_init();
+    hk_uart_init();
     init_sensor_pin();
     hk_hal_i2c_recover();
     HK_REG(HK_TIMER_INTE) = 1U;

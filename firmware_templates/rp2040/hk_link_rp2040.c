@@ -111,7 +111,7 @@ void hk_irq_uart0(void)
     feed_transmitter();
 }
 
-void hk_link_init(void)
+void hk_uart_init(void)
 {
     HK_REG(HK_UART0_IBRD) = HK_UART_DIVISOR >> 6;
     HK_REG(HK_UART0_FBRD) = HK_UART_DIVISOR & 0x3FU;

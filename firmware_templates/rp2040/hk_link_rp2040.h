@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 /* Set the UART up; it must have been let out of reset. */
-void hk_link_init(void);
+void hk_uart_init(void);
 
 /* Whether all that was queued has left. */
 bool hk_link_quiet(void);

@@ -167,9 +167,9 @@ def test_a_driver_that_does_not_look_at_its_registers_is_found_out(
     """Without the check the counts of the wrong range would pass for the recording's."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
-        folder / "hk_mpu6050.c",
-        "    sensor->owed = true;\n    return registers_hold(sensor, now_us);",
-        "    sensor->owed = true;\n    (void)registers_hold;\n    return true;",
+        folder / "hk_mpu6050_burst.c",
+        "    sensor->owed = true;\n    return hk_mpu6050_registers_hold(sensor, now_us);",
+        "    sensor->owed = true;\n    return true;",
     )
     host_board.build(folder)
     result = run(folder, "host", "register-upset=0x1B10@0.5")
@@ -183,7 +183,7 @@ def test_a_gap_of_more_than_four_periods_restarts_the_filter(
     """Six announcements pass before the driver, slowed down, looks without one."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
-        folder / "hk_mpu6050.c",
+        folder / "hk_mpu6050_parts.h",
         "#define HK_OVERDUE_US  (HK_PERIOD_US + HK_PERIOD_US / 2U)",
         "#define HK_OVERDUE_US  (6U * HK_PERIOD_US)",
     )
