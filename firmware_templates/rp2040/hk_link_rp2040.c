@@ -69,7 +69,7 @@ bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
     return true;
 }
 
-bool hk_link_quiet(void)
+bool hk_uart_quiet(void)
 {
     return to_send.tail == to_send.head && (HK_REG(HK_UART0_FR) & HK_UART_BUSY) == 0U;
 }

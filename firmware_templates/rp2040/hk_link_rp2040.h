@@ -8,6 +8,6 @@
 void hk_uart_init(void);
 
 /* Whether all that was queued has left. */
-bool hk_link_quiet(void);
+bool hk_uart_quiet(void);
 
 #endif

@@ -63,7 +63,7 @@ void hk_hal_reboot(void)
 {
     const uint32_t since_us = hk_hal_time_us();
 
-    while (!hk_link_quiet() && !hk_passed(since_us, HK_FAREWELL_US)) {
+    while (!hk_uart_quiet() && !hk_passed(since_us, HK_FAREWELL_US)) {
     }
     HK_REG(HK_WATCHDOG_SCRATCH1) = HK_MARK_REBOOT;
     HK_SET(HK_WATCHDOG_CTRL) = HK_WATCHDOG_TRIGGER;

@@ -242,7 +242,7 @@ def test_an_unexpected_exception_starts_the_board_over(pico_folder: Path, tmp_pa
 def test_application_that_hangs_is_started_over(pico_folder: Path, tmp_path: Path) -> None:
     folder = tmp_path / "code"
     shutil.copytree(pico_folder, folder)
-    changed(folder / "main.c", "hk_hal_watchdog_feed();", "")
+    changed(folder / "hk_app.c", "    hk_hal_watchdog_feed();\n", "")
     rp2040_board.build(folder)
     heard = rp2040_board.run(folder, stimulus(400))
     assert dict(heard.faults)["resets"] == 3  # 1.5 s each, of which samples come in 1.25
