@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from boards import Collector, own_main, stimulus
+from boards import Collector, own_main, stimulus, with_baud
 
 from hostkit.emulation import avr_board
 from hostkit.emulation.board import BoardRun, LinkInput
@@ -146,14 +146,7 @@ def test_served_bytes_are_received(avr_folder: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("baud", [57600, 1_000_000])
 def test_other_baud_rates_are_received(avr_folder: Path, tmp_path: Path, baud: int) -> None:
     folder = program(avr_folder, tmp_path / "code")
-    design = folder / "hk_design.h"
-    text = design.read_text(encoding="ascii")
-    lines = [
-        f"#define HK_LINK_BAUD {baud}UL" if line.startswith("#define HK_LINK_BAUD ") else line
-        for line in text.splitlines()
-    ]
-    assert "\n".join(lines) != text.rstrip("\n")
-    design.write_text("\n".join(lines) + "\n", encoding="ascii")
+    with_baud(folder, baud)
     avr_board.build(folder)
     data = bytes(range(100))
     assert heard(folder, (0.1, data)).stream == data
