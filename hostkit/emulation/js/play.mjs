@@ -125,7 +125,7 @@ class Script {
   }
 
   play(machine) {
-    while (machine.timeS >= this.nextS + 1) {
+    while (machine.timeS + CLOCK_STEP_S >= this.nextS) {
       this.pieces.shift().bytes.forEach((byte) => machine.receive(byte));
     }
   }
