@@ -88,6 +88,14 @@ def test_the_part_keeps_three_bytes_while_nobody_takes_them(
     assert heard(folder, (0.01, b"abcdef"), (0.3, b"on")).stream == b"abcdef"[:PART_BYTES] + b"on"
 
 
+def test_sending_leaves_a_byte_alone_that_waits_to_be_taken(
+    avr_folder: Path, tmp_path: Path
+) -> None:
+    late = "byte = 33U; cli(); wait_until(20000U);" + ECHO + "; sei()"
+    folder = program(avr_folder, tmp_path / "code", begin=late)
+    assert sorted(heard(folder, (0.01, b"a")).stream) == sorted(b"!a")
+
+
 def test_bytes_before_the_receiver_is_on_are_lost(avr_folder: Path, tmp_path: Path) -> None:
     folder = program(avr_folder, tmp_path / "code", begin="(void)0")
     text = (folder / "main.c").read_text(encoding="ascii")

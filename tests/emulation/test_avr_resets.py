@@ -168,6 +168,8 @@ SENSOR = """
     (void)hk_hal_i2c_write(0x68U, divider, 2U);
     _delay_ms(1);
 """
+
+
 @pytest.mark.parametrize("cut", [False, True])
 def test_memory_and_sensor_outlive_the_watchdog_but_not_the_supply(
     avr_folder: Path, tmp_path: Path, cut: bool
