@@ -3,7 +3,7 @@
 #define HK_ATMEGA328P_H
 
 /* Set up the USART; interrupts must be off. */
-void hk_link_init(void);
+void hk_uart_init(void);
 
 /* Start the watchdog; interrupts must be off. */
 void hk_watchdog_start(void);

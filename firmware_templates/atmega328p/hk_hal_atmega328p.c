@@ -88,7 +88,7 @@ void hk_hal_init(void)
     TCCR1A = 0U;
     TIMSK1 = _BV(TOIE1);
     TCCR1B = _BV(CS11);
-    hk_link_init();
+    hk_uart_init();
     EICRA = _BV(ISC01) | _BV(ISC00); /* rising edge */
     EIMSK = _BV(INT0);
     SMCR = 0U; /* sleep is idle mode: the peripherals run on */

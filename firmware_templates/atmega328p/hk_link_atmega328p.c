@@ -16,7 +16,7 @@ typedef char hk_baud_within_2_5_percent[(HK_BAUD_MADE * 40UL <= HK_LINK_BAUD * 4
 
 #define HK_LINK_ON (_BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0))
 
-void hk_link_init(void)
+void hk_uart_init(void)
 {
     PORTD |= _BV(PD0); /* pulled up: an open RXD is a line at rest */
     UBRR0 = (uint16_t)HK_UBRR;

@@ -67,6 +67,15 @@ export class VirtualSensor {
     this.stop();
   }
 
+  // Take the rows for motion that is sampled and filtered, one every period.
+  feelMotion(rowPeriodNs) {
+    this.c.hk_virtual_mpu6050_feel_motion(this.sensor, BigInt(rowPeriodNs));
+  }
+
+  setAd0(high) {
+    this.c.hk_virtual_mpu6050_set_ad0(this.sensor, high ? 1 : 0);
+  }
+
   get struck() {
     return this.c.hk_virtual_mpu6050_struck(this.sensor) >>> 0;
   }
