@@ -195,8 +195,7 @@ def test_the_application_goes_on_after_a_hang(avr_folder: Path, tmp_path: Path) 
     changed(
         folder / "main.c",
         "        hk_hal_watchdog_feed();\n",
-        "        if (hk_hal_reset_cause() != HK_RESET_POWER || hk_hal_time_us() < 1000000UL) {\n"
-        "            hk_hal_watchdog_feed();\n"
+        "        while (hk_hal_reset_cause() == HK_RESET_POWER && hk_hal_time_us() > 1000000UL) {\n"
         "        }\n",
     )
     avr_board.build(folder)
