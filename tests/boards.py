@@ -73,6 +73,16 @@ def changed(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new), encoding="ascii")
 
 
+def with_baud(folder: Path, baud: int) -> None:
+    """Let generated code send and receive at another rate."""
+    design = folder / "hk_design.h"
+    lines = design.read_text(encoding="ascii").splitlines()
+    found = [i for i, line in enumerate(lines) if line.startswith("#define HK_LINK_BAUD ")]
+    assert len(found) == 1
+    lines[found[0]] = f"#define HK_LINK_BAUD {baud}UL"
+    design.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
 def stimulus(samples: int = 300, code: FilterDesign | None = None, seed: int = 3) -> Stimulus:
     """Wild motion: every row differs from its neighbours, some axes saturate."""
     code = code or design()
