@@ -13,9 +13,9 @@ from hostkit.emulation.stm32.clocks import (
 from hostkit.emulation.stm32.core import FLASH_BYTES, Core, Outcome, Segments
 from hostkit.emulation.stm32.flash import STORE_BYTES, STORE_START, Flash, Store
 from hostkit.emulation.stm32.i2c import I2cMaster
-from hostkit.emulation.stm32.nvic import ControlBlock, Nvic
+from hostkit.emulation.stm32.nvic import ControlBlock, Nvic, Requester
 from hostkit.emulation.stm32.pins import Lines, Port, Selector, Wires
-from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusFault, Device, Peripheral
+from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusError, Device, Peripheral
 from hostkit.emulation.stm32.timer import Timer
 from hostkit.emulation.stm32.usart import Sender, Usart
 from hostkit.emulation.stm32.watchdog import Watchdog
@@ -133,9 +133,7 @@ class Machine:
         self._port_a, self._port_b, self._lines = Port(), Port(), Lines()
         self._wires = Wires(time, self._port_b, self._lines, sensor)
         self._i2c = I2cMaster(time, self._clocks, self._wires, sensor)
-        self._usart = Usart(
-            time, self._clocks, peer_baud=self._peer_baud, heard=self.link.append
-        )
+        self._usart = Usart(time, self._clocks, peer_baud=self._peer_baud, heard=self.link.append)
         self._sender.arrive = self._usart.arrive
         self._flash = Flash(time, self._clocks, self.store, lambda: self._reset(BY_POWER))
         self._watchdog = Watchdog(time, self._lsi_hz, lambda: self._reset(BY_WATCHDOG))
@@ -143,8 +141,9 @@ class Machine:
             *(self._clocks, self._timer, self._ticker, self._wires, self._i2c, self._usart),
             *(self._sender, self._flash, self._watchdog),
         )
-        requesters = {EXTI9_5: self._lines, TIM2: self._timer, TIM3: self._ticker}
-        self._nvic = Nvic(self._core, {**requesters, USART1: self._usart})
+        lines: dict[int, Requester] = {EXTI9_5: self._lines, USART1: self._usart}
+        lines |= {TIM2: self._timer, TIM3: self._ticker}
+        self._nvic = Nvic(self._core, lines)
 
     def _wire(self) -> None:
         control = ControlBlock(self._core, lambda: self._reset(BY_REQUEST))
@@ -284,7 +283,7 @@ class Machine:
     def _run_instructions(self) -> None:
         try:
             outcome = self._core.run()
-        except BusFault as fault:
+        except BusError as fault:
             self._fault(str(fault))
             return
         state = self._core.state
