@@ -134,9 +134,9 @@ def test_the_handlers_stand_at_their_vectors(handler: str, number: int) -> None:
 
 def test_the_model_places_its_blocks_there() -> None:
     pytest.importorskip("unicorn")
-    from hostkit.emulation.stm32 import flash, machine
+    from hostkit.emulation.stm32 import flash, peripherals
 
-    text = Path(machine.__file__).read_text(encoding="ascii")
+    text = Path(peripherals.__file__).read_text(encoding="ascii")
     placed = {int(address, 16) for address in re.findall(r"\((0x\w{8}), ", text)}
     page = 0x400
     assert placed == {base // page * page for base in BASE.values()}

@@ -193,7 +193,7 @@ def test_a_wrong_key_locks_the_flash_until_a_reset(writer: Path, tmp_path: Path)
     from hostkit.emulation.stm32.timeline import BusError
 
     machine = machine_of(writer, tmp_path)
-    flash = Flash(machine.time, machine._clocks, Store(b"", None), lambda: None)
+    flash = Flash(machine.time, machine._own.clocks, Store(b"", None), lambda: None)
     with pytest.raises(BusError):
         flash.write(0x04, 0xCDEF89AB)
     for key in (0x45670123, 0xCDEF89AB):
