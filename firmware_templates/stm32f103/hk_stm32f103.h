@@ -156,6 +156,7 @@
 #define USART_SR_FE      HK_BIT(1)
 #define USART_SR_ORE     HK_BIT(3)
 #define USART_SR_RXNE    HK_BIT(5)
+#define USART_SR_TC      HK_BIT(6)
 #define USART_SR_TXE     HK_BIT(7)
 #define USART_CR1_RE     HK_BIT(2)
 #define USART_CR1_TE     HK_BIT(3)

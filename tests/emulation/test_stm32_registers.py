@@ -5,9 +5,11 @@ iwdg_common_all.h, timer and exti headers, irq.json) and compared with RM0008, P
 """
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
+from boards import require_or_skip
 
 HEADER = Path(__file__).parents[2] / "firmware_templates/stm32f103/hk_stm32f103.h"
 START = HEADER.with_name("hk_start.c")
@@ -63,7 +65,7 @@ BITS = {
     "I2C_SR1": {"SB": 0, "ADDR": 1, "BTF": 2, "RXNE": 6, "TXE": 7, "BERR": 8, "ARLO": 9, "AF": 10},
     "I2C_SR2": {"MSL": 0},
     "I2C_CCR": {"FAST": 15},
-    "USART_SR": {"FE": 1, "ORE": 3, "RXNE": 5, "TXE": 7},
+    "USART_SR": {"FE": 1, "ORE": 3, "RXNE": 5, "TC": 6, "TXE": 7},
     "USART_CR1": {"RE": 2, "TE": 3, "RXNEIE": 5, "TXEIE": 7, "UE": 13},
     "SCB_CCR": {"STKALIGN": 9},
 }  # fmt: skip
@@ -141,3 +143,16 @@ def test_the_model_places_its_blocks_there() -> None:
     page = 0x400
     assert placed == {base // page * page for base in BASE.values()}
     assert flash.STORE_START == 0x08000000 + 62 * 1024
+
+
+def test_the_board_layer_compiles_without_a_warning_of_clang(stm32_folder: Path) -> None:
+    require_or_skip("clang")
+    for source in [*sorted(stm32_folder.glob("hk_*_stm32f103.c")), stm32_folder / "hk_start.c"]:
+        done = subprocess.run(
+            ["clang", "--target=thumbv7m-none-eabi", "-mcpu=cortex-m3", "-std=gnu11",
+             "-ffreestanding", "-DF_CPU=72000000UL", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
+             "-Wconversion", "-Wdouble-promotion", "-Wstrict-prototypes", "-Wmissing-prototypes",
+             "-Werror", "-fsyntax-only", str(source)],
+            capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr

@@ -94,6 +94,28 @@ def test_a_restart_keeps_the_memory_and_says_why(
     assert bytes(machine.link) == bytes([POWER, 0, 0, cause, 1, 0])
 
 
+def test_what_is_queued_leaves_before_a_reboot(code: Path, tmp_path: Path) -> None:
+    started(code, ONCE % "static uint8_t many[200]; hk_hal_transmit(many, 200U); hk_hal_reboot();")
+    machine = machine_of(code, tmp_path)
+    machine.run(0.1)
+    assert machine.resets == 1
+    assert bytes(machine.link) == bytes([POWER, 0, 0, *[0] * 200, REQUEST, 1, 0])
+
+
+def test_a_link_that_does_not_move_does_not_hold_a_reboot_for_long(
+    code: Path, tmp_path: Path
+) -> None:
+    begins = "USART1_CR1 = 0U; hk_hal_reboot();"
+    started(code, ONCE % f"static uint8_t many[200]; hk_hal_transmit(many, 200U); {begins}")
+    changed(code / "hk_link_stm32f103.c", "== sent.tail && (USART1_SR & USART_SR_TC) != 0U",
+            "== sent.tail && (USART1_SR & USART_SR_TC) == 0U")  # fmt: skip
+    stm32_board.build(code)
+    machine = machine_of(code, tmp_path)
+    while machine.resets == 0 and machine.time.now_s < 0.5:
+        machine.run(0.001)
+    assert 0.06 <= machine.time.now_s <= 0.08
+
+
 def test_a_cause_is_told_once(code: Path, tmp_path: Path) -> None:
     """Flags that nobody removes would still tell of the power-up after a reboot."""
     started(code, "if (starts < 2U) { hk_hal_reboot(); } " + FEED)
