@@ -194,34 +194,39 @@ class Machine:
 
     # --- the course of time ----------------------------------------------------------------------
 
+    def _next(self) -> Device:
+        """Return what happens next."""
+        first = self._devices[0]
+        due = first.due
+        for device in self._devices:
+            if device.due < due:
+                first, due = device, device.due
+        return first
+
     def _plan(self) -> None:
         """Look at the requests, and at when the next thing happens."""
         self._own.nvic.update()
-        wake = self.time.until
-        for device in self._devices:
-            if device.due < wake:
-                wake = device.due
-        self.time.wake = wake
+        self.time.wake = min(self.time.until, self._next().due)
 
     def _let_happen(self) -> None:
         """Let happen what is due, the earliest first; what befell a stalled core, each in time."""
         time = self.time
         now = time.now
         stalled = self._own.flash.due <= now
-        while self._reset_by is None:
-            device = min(self._devices, key=_due)
-            if device.due > now:
-                break
+        device = self._next()
+        while device.due <= now and self._reset_by is None:
             if stalled:
                 time.now = device.due
             device.happen()
+            device = self._next()
         time.now = now
-        self._plan()
+        self._own.nvic.update()
+        time.wake = min(time.until, device.due)
 
     def _doze(self) -> None:
         """Jump from event to event until an interrupt ends the sleep."""
         while not self._own.nvic.wakes:
-            if min(device.due for device in self._devices) == NEVER:
+            if self._next().due == NEVER:
                 raise EmulationError("the firmware sleeps for ever")
             self.time.now = max(self.time.now, self.time.wake)
             self._let_happen()
@@ -272,8 +277,7 @@ class Machine:
     def _wait(self) -> None:
         """Let a program that polls in vain wait for the next event: the time passes, unspent."""
         now = self.time.now
-        next_due = min(d.due for d in self._devices)
-        self.time.now = max(now, min(next_due, now + LONGEST_WAIT_TICKS))
+        self.time.now = max(now, min(self._next().due, now + LONGEST_WAIT_TICKS))
         self._let_happen()
 
     def _write(self, address: int, size: int, value: int) -> None:
@@ -301,7 +305,3 @@ class Machine:
         elif not begins and self._begun_at is not None:
             self.segments.add(own - self._begun_at)
             self._begun_at = None
-
-
-def _due(device: Device) -> int:
-    return device.due
