@@ -186,3 +186,15 @@ def pico_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = generated("rp2040", tmp_path_factory.mktemp("pico"))
     rp2040_board.build(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def stm32_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Generated code of the STM32F103 target, built."""
+    from hostkit.emulation import stm32_board
+
+    pytest.importorskip("unicorn")
+    require_or_skip("make", "arm-none-eabi-gcc", "gcc")
+    folder = generated("stm32f103", tmp_path_factory.mktemp("stm32"))
+    stm32_board.build(folder)
+    return folder

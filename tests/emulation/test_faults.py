@@ -123,11 +123,17 @@ def test_pico_keeps_the_promise(pico_folder: Path, promise: Promise) -> None:
     assert_kept(run(pico_folder, "rp2040", promise.fault), promise)
 
 
-@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040"])
+@pytest.mark.parametrize("promise", PROMISES, ids=str)
+def test_blue_pill_keeps_the_promise(stm32_folder: Path, promise: Promise) -> None:
+    assert_kept(run(stm32_folder, "stm32f103", promise.fault), promise)
+
+
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040", "stm32f103"])
 def test_a_foreign_part_is_refused_and_does_not_recover(
-    host_folder: Path, avr_folder: Path, pico_folder: Path, target: str
+    request: pytest.FixtureRequest, target: str
 ) -> None:
-    folder = {"host": host_folder, "atmega328p": avr_folder, "rp2040": pico_folder}[target]
+    names = {"host": "host", "atmega328p": "avr", "rp2040": "pico", "stm32f103": "stm32"}
+    folder = request.getfixturevalue(f"{names[target]}_folder")
     result = run(folder, target, "wrong-identity=0x12")
     assert result.fault_report is not None
     assert result.fault_report.texts == ("MPU-6050 refused: WHO_AM_I is 0x12",)
