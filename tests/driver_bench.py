@@ -91,7 +91,9 @@ def run(program: Path, feels: Stimulus, *commands: str) -> Report:
     )
     assert done.returncode == 0, done.stderr
     said = [line.split() for line in done.stdout.splitlines()]
-    numbers = {verb: [[int(n) for n in rest] for v, *rest in said if v == verb] for verb, *_ in said}
+    numbers = {
+        verb: [[int(n) for n in rest] for v, *rest in said if v == verb] for verb, *_ in said
+    }
     samples = np.array(numbers.get("sample", []), dtype=np.int64).reshape(-1, 9)
     counts = numbers["counts"][0]
     assert len(counts) == len(ERRORS)
