@@ -67,7 +67,7 @@ def test_a_good_sensor_passes_and_is_set_up_anew(program: Path) -> None:
     assert counts[2] == pytest.approx(32768 / CODE.sensor.accel_full_scale_g, rel=0.01)
 
 
-@pytest.mark.parametrize("code", [1, 2, 16, 30, 31])
+@pytest.mark.parametrize("code", [1, 16, 31])
 def test_trims_are_the_formulas(program: Path, code: int) -> None:
     high, low = code >> 2 << 5 | code, (code & 3) * 0b010101
     report = run(
@@ -80,9 +80,15 @@ def test_trims_are_the_formulas(program: Path, code: int) -> None:
     np.testing.assert_allclose(trim, [accel] * 3 + [gyro, -gyro, gyro], atol=0.5)
 
 
-@pytest.mark.parametrize("axis", range(6))
 @pytest.mark.parametrize(
-    ("percent", "result"), [(85, FAILED), (87, PASSED), (113, PASSED), (115, FAILED), (0, FAILED)]
+    ("axis", "percent", "result"),
+    [
+        *[(axis, 85, FAILED) for axis in range(6)],
+        *[(axis, 87, PASSED) for axis in (0, 4)],
+        *[(axis, 113, PASSED) for axis in (1, 5)],
+        *[(axis, 115, FAILED) for axis in (2, 4)],
+        (3, 0, FAILED),
+    ],
 )
 def test_the_limit_is_14_percent_on_every_axis(
     program: Path, axis: int, percent: int, result: int
@@ -108,11 +114,11 @@ def test_a_sensor_that_moves_is_told_from_a_bad_one(program: Path) -> None:
 
 def test_a_sensor_without_codes_has_no_figures(program: Path) -> None:
     report = run(program, at_rest(), at_once("no-trim"), "run 500", "test", "run 1500")
-    result, response, trim = tested(report)
+    result, _, trim = tested(report)
     assert result == NO_TRIM
     assert trim == [0] * 6
     one_missing = (CODES[0] & 0xE0, *CODES[1:])
-    result, response, trim = tested(
+    result, _, trim = tested(
         run(program, at_rest(), set_codes(*one_missing), "run 500", "test", "run 1500")
     )
     assert result == NO_TRIM
