@@ -94,7 +94,7 @@ class VirtualSensor:
         )
 
     def _function(self, name: str, result: type | None) -> "ctypes._NamedFuncPointer":
-        function = self._library[PREFIX + name]
+        function: ctypes._NamedFuncPointer = getattr(self._library, PREFIX + name)
         function.restype = result
         return function
 

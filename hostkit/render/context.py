@@ -1,10 +1,11 @@
 """What templates see: records whose fields are ready to be placed."""
 
+import re
 from dataclasses import dataclass
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.errors import DesignError
+from hostkit.errors import DesignError, RenderError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
@@ -12,6 +13,8 @@ from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
+from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -26,6 +29,7 @@ class DesignContext:
     digest: str
     digest_bytes: tuple[int, ...]
     version: str
+    version_number: int
     rate_hz: str
     period_us: int
 
@@ -72,6 +76,7 @@ class SensorContext:
     gyro_ranges: tuple[RangeContext, ...]
     accel_ranges: tuple[RangeContext, ...]
     rad_s_per_count: str
+    m_s2_per_count: str
     gyro_low_passes: tuple[LowPassContext, ...]
     accel_low_passes: tuple[LowPassContext, ...]
     wake_periods: tuple[WakePeriodContext, ...]
@@ -137,6 +142,7 @@ class RenderContext:
     design: DesignContext
     spec: FixedPointSpec
     filter: FilterContext
+    run_time: RunTimeContext
     arctan: ArctanContext
     root_fraction_bits: int
     stretch_fraction_bits: int
@@ -146,6 +152,7 @@ class RenderContext:
     uses_arcsin: bool
     sensor: SensorContext
     link: LinkPlan
+    options: FirmwareOptions
     target: Target
 
     def banner(self, template: str) -> str:
@@ -156,19 +163,25 @@ class RenderContext:
         )
 
 
-def render_context(design: FilterDesign, target: Target) -> RenderContext:
+def render_context(
+    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+) -> RenderContext:
     """Lower a design and lay out what templates need.
 
     Raises
     ------
     HostkitError
-        If the design cannot be lowered, or does not fit the target's sensor rate or link.
+        If the design cannot be lowered, or does not fit the target's sensor rate or link, or
+        there are options for a target that runs no firmware.
     """
+    if target.kind != "mcu" and options != DEFAULT_OPTIONS:
+        raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
     spec = FILTERS[design.filter].lower(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
-        filter=filter_context(spec),
+        filter=filter_context(spec, design.rate_hz),
+        run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
@@ -177,7 +190,8 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target, hidden_words=len(spec.hidden)),
+        link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
+        options=options,
         target=target,
     )
 
@@ -188,9 +202,16 @@ def _design_context(design: FilterDesign) -> DesignContext:
         digest=name,
         digest_bytes=tuple(bytes.fromhex(name)),
         version=__version__,
+        version_number=_version_number(__version__),
         rate_hz=repr(design.rate_hz),
         period_us=round(1e6 * design.period_s),
     )
+
+
+def _version_number(version: str) -> int:
+    """Return a version as AUTOPILOT_VERSION has it: a byte each for major, minor, patch and kind."""
+    parts = [int(part) for part in re.findall(r"\d+", version)[:3]]
+    return int.from_bytes(bytes([*parts, 0, 0, 0, 0][:4]), "big")
 
 
 def _mounting_context(mounting: Mounting) -> tuple[MountingContext, ...]:
@@ -218,6 +239,7 @@ def _sensor_context(design: FilterDesign) -> SensorContext:
         gyro_ranges=tuple(_range(r, sensor.gyro_rad_s_per_count(r)) for r in sensor.gyro_ranges),
         accel_ranges=tuple(_range(r, sensor.accel_m_s2_per_count(r)) for r in sensor.accel_ranges),
         rad_s_per_count=repr(sensor.rad_s_per_count(design.sensor)),
+        m_s2_per_count=repr(sensor.m_s2_per_count(design.sensor)),
         gyro_low_passes=tuple(
             _low_pass(lp.setting, gyro_section(lp, tick_s)) for lp in sensor.low_passes
         ),

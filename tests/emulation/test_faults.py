@@ -137,11 +137,16 @@ def test_avr_keeps_the_promise(avr_folder: Path, promise: Promise) -> None:
     assert_kept(run(avr_folder, "atmega328p", promise.fault), promise)
 
 
-@pytest.mark.parametrize("target", ["host", "atmega328p"])
+@pytest.mark.parametrize("promise", PROMISES, ids=str)
+def test_pico_keeps_the_promise(pico_folder: Path, promise: Promise) -> None:
+    assert_kept(run(pico_folder, "rp2040", promise.fault), promise)
+
+
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040"])
 def test_a_foreign_part_is_refused_and_does_not_recover(
-    host_folder: Path, avr_folder: Path, target: str
+    host_folder: Path, avr_folder: Path, pico_folder: Path, target: str
 ) -> None:
-    folder = {"host": host_folder, "atmega328p": avr_folder}[target]
+    folder = {"host": host_folder, "atmega328p": avr_folder, "rp2040": pico_folder}[target]
     result = run(folder, target, "wrong-identity=0x12")
     assert result.fault_report is not None
     assert result.fault_report.texts == ("MPU-6050 refused: WHO_AM_I is 0x12",)
