@@ -1,16 +1,15 @@
 """The driver alone, built with sanitizers against the virtual sensor: see driver_bench.c."""
 
-import re
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from boards import generated
-
 from hostkit.emulation.board import Stimulus
 from hostkit.emulation.fault import KINDS
 from hostkit.records import FilterDesign
+from hostkit.render import FirmwareOptions, generate, write
+from hostkit.targets import TARGETS
 
 ERRORS = (
     "transfer",
@@ -29,21 +28,10 @@ STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contr
 CHECKS = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
-def replaced(text: str, pattern: str, new: str) -> str:
-    text, changes = re.subn(pattern, new, text)
-    assert changes == 1, pattern
-    return text
-
-
-def build(folder: Path, code: FilterDesign, *, fifo: bool, at_1_khz: bool = False) -> Path:
-    """Build for a design; 1 kHz is more than the link carries, so it is made of 500 Hz."""
-    generated("host", folder, code)
-    header = folder / "hk_design.h"
-    text = replaced(header.read_text(), r"#define HK_FIFO \d", f"#define HK_FIFO {int(fifo)}")
-    if at_1_khz:
-        text = replaced(text, r"HK_PERIOD_US UINT32_C\(2000\)", "HK_PERIOD_US UINT32_C(1000)")
-        text = replaced(text, r"X\(0x19, 0x01\)", "X(0x19, 0x00)")
-    header.write_text(text)
+def build(folder: Path, code: FilterDesign, *, fifo: bool) -> Path:
+    """Build for a design; the link is fast enough for any rate."""
+    options = FirmwareOptions(acquisition="fifo" if fifo else "burst", baud=2_000_000)
+    write(generate(code, TARGETS["host"], options), folder)
     parts = ("hk_mpu6050*.c", "hk_self_test.c", "hk_virtual_*.c")
     sources = sorted(str(file) for part in parts for file in folder.glob(part))
     harness = Path(__file__).with_name("driver_bench.c")

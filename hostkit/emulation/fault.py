@@ -82,7 +82,7 @@ class Fault:
 
     @property
     def spoils_an_axis(self) -> bool:
-        """Whether samples come of which one axis is wrong, and nothing tells them from true ones."""
+        """Whether one axis of samples is wrong, and nothing tells them from true ones."""
         standby = self.kind.name == "register-upset" and self.amount >> 8 == STANDBY_REGISTER
         return standby or self.kind.name in SPOILING
 

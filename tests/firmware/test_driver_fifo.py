@@ -12,7 +12,7 @@ from driver_bench import Report, at_once, build, fault, run
 from hostkit.emulation.board import Stimulus
 from hostkit.sensors.mpu6050 import settle_samples
 
-CODE = design(rate_hz=500.0, low_pass_setting=1)
+CODE = design(rate_hz=1000.0, low_pass_setting=1)
 PERIOD_US = 1000
 JITTER_US = 420
 """INT waits for the end of a transaction, the longest of which takes so long."""
@@ -56,13 +56,13 @@ def assert_times_are_true(report: Report, rows: np.ndarray, jitter_us: int = JIT
 @pytest.fixture(scope="module")
 def fifo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     require_or_skip("gcc")
-    return build(tmp_path_factory.mktemp("fifo"), CODE, fifo=True, at_1_khz=True)
+    return build(tmp_path_factory.mktemp("fifo"), CODE, fifo=True)
 
 
 @pytest.fixture(scope="module")
 def burst(tmp_path_factory: pytest.TempPathFactory) -> Path:
     require_or_skip("gcc")
-    return build(tmp_path_factory.mktemp("burst"), CODE, fifo=False, at_1_khz=True)
+    return build(tmp_path_factory.mktemp("burst"), CODE, fifo=False)
 
 
 def test_every_row_comes_once_and_at_its_time(fifo: Path) -> None:

@@ -47,7 +47,9 @@ LEFT_OUT = {
 }
 """Rules that do not gate, and why."""
 
-OTHER_PROGRAMS = re.compile(r"^(main|hk_hal_(host|linux)\w*|hk_host_\w+|hk_image|hk_virtual_\w+)\.c$")
+OTHER_PROGRAMS = re.compile(
+    r"^(main|hk_hal_(host|linux)\w*|hk_host_\w+|hk_image|hk_virtual_\w+)\.c$"
+)
 """Programs of the host, which use the C library; and the virtual sensor, which is no firmware."""
 
 FINDING = re.compile(r"^(?P<file>[^:]+):(?P<line>\d+): (?P<id>[\w.-]+): (?P<text>.*)$")

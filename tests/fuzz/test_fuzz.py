@@ -20,9 +20,7 @@ LIMITS = ("-max_len=4096", "-timeout=20", "-rss_limit_mb=1024", "-print_final_st
 def built(folder: Path, name: str) -> Path:
     """Compile a harness over the application, with the board of the fuzzers below it."""
     sources = [
-        path.name
-        for path in sorted(folder.glob("hk_*.c"))
-        if not path.name.startswith(BOARD_FILES)
+        path.name for path in sorted(folder.glob("hk_*.c")) if not path.name.startswith(BOARD_FILES)
     ]
     command = ["clang", "-g", "-O1", *SANITIZERS, "-isystem", "mavlink", "-o", name]
     done = subprocess.run(
