@@ -59,7 +59,7 @@ class Interrupts(ctypes.Structure):
     active: int
     ready: int
     configuration: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("enabled", ctypes.c_uint64),
         ("pending", ctypes.c_uint64),
         ("requests", ctypes.c_uint64),
@@ -80,7 +80,7 @@ class State(ctypes.Structure):
     begun: int
     fault: int
     fault_address: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("time", Timeline),
         ("interrupts", Interrupts),
         ("instructions", ctypes.c_uint64),

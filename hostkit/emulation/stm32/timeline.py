@@ -35,7 +35,7 @@ class Timeline(ctypes.Structure):
     until: int
     wake: int
     stalled_until: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("now", ctypes.c_uint64),
         ("ticks_per_instruction", ctypes.c_uint64),
         ("until", ctypes.c_uint64),
