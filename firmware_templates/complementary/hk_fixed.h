@@ -9,6 +9,12 @@
 
 #define HK_COEFFICIENT_MSB INT32_C(0x10000)
 
+/* raw / 2^frac */
+typedef struct {
+    int32_t raw;
+    uint8_t frac;
+} hk_coefficient_t;
+
 /* The integer model shifts negative numbers arithmetically. */
 typedef char hk_shift_is_arithmetic[((INT32_C(-3) >> 1) == INT32_C(-2)) ? 1 : -1];
 

@@ -23,7 +23,18 @@ from hostkit.records import GeneratedFile
 STANDARD_MESSAGES = (
     *("HEARTBEAT", "SYS_STATUS", "STATUSTEXT"),
     *("ATTITUDE", "SCALED_IMU", "RAW_IMU", "HIGHRES_IMU"),
+    *("PARAM_REQUEST_LIST", "PARAM_REQUEST_READ", "PARAM_SET", "PARAM_VALUE"),
+    *("COMMAND_LONG", "COMMAND_ACK", "AUTOPILOT_VERSION", "TIMESYNC", "PING"),
 )
+COMMANDS = (
+    "MAV_CMD_PREFLIGHT_CALIBRATION",
+    "MAV_CMD_PREFLIGHT_STORAGE",
+    "MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN",
+    "MAV_CMD_SET_MESSAGE_INTERVAL",
+    "MAV_CMD_REQUEST_MESSAGE",
+    "MAV_CMD_USER_1",
+)
+"""The commands of MAV_CMD that the firmware knows; the others are left out."""
 STANDARD_DEFINITIONS = ("minimal.xml", "standard.xml", "common.xml")
 HEADER_FOLDER = "mavlink"
 DIALECT = "hostkit"
@@ -51,13 +62,25 @@ def definition() -> str:
     own = ElementTree.parse(Path(__file__).with_name("hostkit_messages.xml")).getroot()
     messages = [_find_message(sources, name) for name in STANDARD_MESSAGES]
     wanted = {field.get("enum") for m in messages for field in m.iter("field")} - {None}
+    found: dict[str | None, ElementTree.Element] = {}
+    for source in sources:
+        for enum in source.iter("enum"):
+            if enum.get("name") in wanted:
+                _join(
+                    found.setdefault(enum.get("name"), ElementTree.Element("enum", enum.attrib)),
+                    enum,
+                )
     root = ElementTree.Element("mavlink")
     enums = ElementTree.SubElement(root, "enums")
-    for source in sources:
-        enums.extend(e for e in source.iter("enum") if e.get("name") in wanted)
-    enums.extend(own.iter("enum"))
+    enums.extend([*found.values(), *own.iter("enum")])
     ElementTree.SubElement(root, "messages").extend([*messages, *own.iter("message")])
     return ElementTree.tostring(root, encoding="unicode")
+
+
+def _join(enum: ElementTree.Element, part: ElementTree.Element) -> None:
+    """Add the entries of a part of an enum; of the many commands only those that are known."""
+    commands = enum.get("name") == "MAV_CMD"
+    enum.extend(e for e in part.iter("entry") if not commands or e.get("name") in COMMANDS)
 
 
 def _find_message(sources: list[ElementTree.Element], name: str) -> ElementTree.Element:

@@ -4,7 +4,9 @@ from dataclasses import dataclass, replace
 
 from hostkit.fixedpoint import Coefficient, QFormat
 from hostkit.records import AXES, Axis
+from hostkit.render.literals import float32_text
 from hostkit.spec import BiasIntegral, FixedPointSpec, ForceGate
+from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 NO_GATE = ForceGate(lowest=0, highest=0)
 NO_INTEGRAL = BiasIntegral(
@@ -28,12 +30,15 @@ class AxisContext:
         Whether the design has it.
     rate_gain, tilt_offset_raw, gyro_bias_raw
         As in the spec.
+    rad_s_per_count
+        What one count of rate is to the filter, its scale put right; C99 hexadecimal text.
     """
 
     name: Axis
     rate_axis: str
     present: bool
     rate_gain: Coefficient
+    rad_s_per_count: str
     tilt_offset_raw: int = 0
     gyro_bias_raw: int = 0
 
@@ -46,11 +51,14 @@ class FilterContext:
     ----------
     axes
         Roll and pitch.
+    bias_fraction_bits
+        Those of the bias: 0 where it is constant.
     coefficients, all_coefficients
         Those of the design, and with those of what it lacks.
     """
 
     axes: tuple[AxisContext, ...]
+    bias_fraction_bits: int
     coefficients: tuple[Coefficient, ...]
     all_coefficients: tuple[Coefficient, ...]
     uses_gate: bool
@@ -59,13 +67,14 @@ class FilterContext:
     integral: BiasIntegral
 
 
-def filter_context(spec: FixedPointSpec) -> FilterContext:
+def filter_context(spec: FixedPointSpec, rate_hz: float) -> FilterContext:
     """Lay out what templates need of the filter."""
-    axes = tuple(_axis(spec, name) for name in AXES["both"])
+    axes = tuple(_axis(spec, name, rate_hz) for name in AXES["both"])
     integral = spec.integral or NO_INTEGRAL
     own = () if spec.integral is None else (integral.gain,)
     return FilterContext(
         axes=axes,
+        bias_fraction_bits=0 if spec.integral is None else integral.fraction_bits,
         coefficients=(*spec.rate_gains, spec.blend, *own),
         all_coefficients=(*(axis.rate_gain for axis in axes), spec.blend, integral.gain),
         uses_gate=spec.gate is not None,
@@ -75,17 +84,28 @@ def filter_context(spec: FixedPointSpec) -> FilterContext:
     )
 
 
-def _axis(spec: FixedPointSpec, name: Axis) -> AxisContext:
+def _rad_s(gain: Coefficient, rate_hz: float) -> str:
+    return float32_text(gain.quantised * RAD_PER_HALF_TURN_LSB * rate_hz)
+
+
+def _axis(spec: FixedPointSpec, name: Axis, rate_hz: float) -> AxisContext:
     rate_axis = {"roll": "x", "pitch": "y"}[name]
     if name not in spec.axes:
         gain = replace(spec.rate_gains[0], name=f"rate_gain_{name}")
-        return AxisContext(name=name, rate_axis=rate_axis, present=False, rate_gain=gain)
+        return AxisContext(
+            name=name,
+            rate_axis=rate_axis,
+            present=False,
+            rate_gain=gain,
+            rad_s_per_count=_rad_s(gain, rate_hz),
+        )
     i = spec.axes.index(name)
     return AxisContext(
         name=name,
         rate_axis=rate_axis,
         present=True,
         rate_gain=spec.rate_gains[i],
+        rad_s_per_count=_rad_s(spec.rate_gains[i], rate_hz),
         tilt_offset_raw=spec.tilt_offset_raw[i],
         gyro_bias_raw=spec.gyro_bias_raw[i],
     )

@@ -41,7 +41,7 @@ def test_the_c_equals_the_integer_model(host_cc, option: FilterDesign, tmp_path:
         ("hk_fixed.h", "value < -limit ? -limit : value", "value < -limit ? value : value"),
         (
             "hk_filter.c",
-            "filter->bias[HK_PITCH] = HK_BIAS_START_PITCH",
+            "filter->bias[HK_PITCH] = filter->settings.bias[HK_PITCH]",
             "filter->bias[HK_PITCH] = 0",
         ),
     ],

@@ -9,6 +9,7 @@ int main(void)
     int16_t accel[3];
     int16_t gyro[3];
 
+    hk_filter_defaults(&filter.settings);
     hk_filter_init(&filter);
     while (scanf("%hd %hd %hd %hd %hd %hd", &accel[0], &accel[1], &accel[2], &gyro[0], &gyro[1],
                  &gyro[2]) == 6) {

@@ -17,6 +17,13 @@ from hostkit.filters.complementary.parameters import (
     settings,
     tau_from_eta,
 )
+from hostkit.filters.complementary.run_time import (
+    RUN_TIME,
+    RunTimeParameter,
+    limits,
+    told_by_device,
+    with_told,
+)
 from hostkit.filters.complementary.tilt import RATE_AXIS, measured_tilt_rad, measured_tilt_raw
 
 __all__ = [
@@ -25,11 +32,14 @@ __all__ = [
     "KINDS",
     "LEAST_FORCE_G",
     "RATE_AXIS",
+    "RUN_TIME",
     "ParameterKind",
+    "RunTimeParameter",
     "Settings",
     "crossover_hz",
     "eta_from_tau",
     "force_gate",
+    "limits",
     "lower",
     "measured_tilt_rad",
     "measured_tilt_raw",
@@ -40,4 +50,6 @@ __all__ = [
     "settings",
     "step_integer",
     "tau_from_eta",
+    "told_by_device",
+    "with_told",
 ]

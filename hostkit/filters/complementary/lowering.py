@@ -127,8 +127,14 @@ def _integral(design: FilterDesign, own: Settings) -> BiasIntegral | None:
     )
 
 
+def bias_unit_rad_s(design: FilterDesign, integral: BiasIntegral | None) -> float:
+    """Return the worth of one unit of a bias in the spec, rad/s."""
+    fraction_bits = 0 if integral is None else integral.fraction_bits
+    return math.ldexp(RAD_PER_HALF_TURN_LSB * design.rate_hz, -fraction_bits)
+
+
 def _bias_words(design: FilterDesign, integral: BiasIntegral) -> tuple[StateWord, ...]:
-    per_unit = math.ldexp(RAD_PER_HALF_TURN_LSB * design.rate_hz, -integral.fraction_bits)
+    per_unit = bias_unit_rad_s(design, integral)
     return tuple(
         StateWord(name=f"gyro_bias_{axis}", unit="rad/s", per_unit=per_unit)
         for axis in AXES[design.axes]
