@@ -64,7 +64,10 @@ def definition() -> str:
     for source in sources:
         for enum in source.iter("enum"):
             if enum.get("name") in wanted:
-                _join(found.setdefault(enum.get("name"), ElementTree.Element("enum", enum.attrib)), enum)
+                _join(
+                    found.setdefault(enum.get("name"), ElementTree.Element("enum", enum.attrib)),
+                    enum,
+                )
     root = ElementTree.Element("mavlink")
     enums = ElementTree.SubElement(root, "enums")
     enums.extend([*found.values(), *own.iter("enum")])

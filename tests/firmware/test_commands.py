@@ -5,14 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from boards import hear, stimulus, with_faults
+from designs import design
 from ground import (
     ACCEPTED,
     DENIED,
     FAILED,
+    GROUND,
     IN_PROGRESS,
     TEMPORARILY_REJECTED,
     UNSUPPORTED,
-    GROUND,
     Ground,
     M,
     acks,
@@ -23,7 +24,6 @@ from ground import (
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from designs import design
 
 INTERVAL, REQUEST, CALIBRATE, STORE, REBOOT = 511, 512, 241, 245, 246
 SCALED_IMU, RAW_IMU, ATTITUDE, HIGHRES_IMU = 26, 27, 30, 105
@@ -125,9 +125,7 @@ def test_the_three_views_of_a_sample_agree(host_folder: Path) -> None:
         assert raw.time_usec == sample.time_usec == high.time_usec
         force = np.array(sample.accel) * [1, -1, -1] / 16384
         np.testing.assert_allclose([high.xacc, high.yacc, high.zacc], force * 9.80665, rtol=1e-6)
-        np.testing.assert_allclose(
-            [scaled.xacc, scaled.yacc, scaled.zacc], force * 1000, atol=0.51
-        )
+        np.testing.assert_allclose([scaled.xacc, scaled.yacc, scaled.zacc], force * 1000, atol=0.51)
         rate = np.radians(np.array(sample.gyro) * [1, -1, -1] / 65.5)
         np.testing.assert_allclose([high.xgyro, high.ygyro, high.zgyro], rate, rtol=2e-3)
         np.testing.assert_allclose(

@@ -110,9 +110,7 @@ def split_at_value(heard, name: str) -> tuple[list, list]:
 
 def wrong_steps(samples: list, spec: FixedPointSpec) -> int:
     """Count the steps that are not the integer model's, each from the angles before it."""
-    accel, gyro = (
-        np.array([getattr(s, name) for s in samples[1:]]) for name in ("accel", "gyro")
-    )
+    accel, gyro = (np.array([getattr(s, name) for s in samples[1:]]) for name in ("accel", "gyro"))
     angles = np.array([[s.roll, s.pitch] for s in samples])
     wanted = FILTER.step_integer(spec, angles[:-1], accel, gyro)
     return int((wanted != angles[1:]).any(axis=1).sum())
