@@ -143,7 +143,11 @@ class Validator:
         return residual
 
     def report(
-        self, thresholds: Thresholds, *, other_digest: str | None = None
+        self,
+        thresholds: Thresholds,
+        *,
+        other_digest: str | None = None,
+        retuned: bool = False,
     ) -> ValidationReport:
         """Give the verdict on what was taken so far.
 
@@ -153,11 +157,18 @@ class Validator:
             What passes.
         other_digest
             Digest of the design that the device runs, if it is another one.
+        retuned
+            Whether the device runs its design with other parameters: set, calibrated or stored.
         """
         rms = math.sqrt(self._squares / self._residual_count) if self._residual_count else None
         reasons = self._reasons(thresholds, rms)
         if other_digest is not None:
             reasons = (f"the device runs design {other_digest}",)
+        elif retuned:
+            reasons = (
+                "the device runs its design with other parameters, set over the link, calibrated "
+                "or stored; PREFLIGHT_STORAGE with 2 gives it the design's again",
+            )
         return ValidationReport(
             samples=self.samples,
             checked=self.checked,
@@ -166,7 +177,7 @@ class Validator:
             rms_rad=rms,
             max_rad=self._max if self._residual_count else None,
             digest_ok=other_digest is None,
-            verdict="refused" if other_digest else "fail" if reasons else "pass",
+            verdict="refused" if other_digest or retuned else "fail" if reasons else "pass",
             reasons=reasons,
         )
 

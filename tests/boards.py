@@ -24,12 +24,28 @@ BOOT, ACTIVE, CRITICAL = 1, 4, 5
 RESTARTED, SATURATED = 1, 2
 PICO_TOOLS = ("make", "gcc", "arm-none-eabi-gcc", "node", "rp2040js", "clang", "wasm-ld")
 
+TARGET_TOOLS = {
+    "host": ("gcc", "make"),
+    "atmega328p": ("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld"),
+    "rp2040": PICO_TOOLS,
+    "stm32f103": ("make", "arm-none-eabi-gcc", "gcc", "unicorn"),
+    "spartan3adsp": ("ghdl",),
+}
+
 
 def require_or_skip(*tools: str) -> None:
+    if "unicorn" in tools:
+        pytest.importorskip("unicorn")
     try:
         require(*tools)
     except ToolMissingError as error:
         pytest.skip(str(error))
+
+
+def program_or_skip(name: str) -> None:
+    """Skip where a program is missing that only tests need; its package has its name."""
+    if shutil.which(name) is None:
+        pytest.skip(f"{name} is not installed: sudo apt-get install {name}")
 
 
 def generated(target: str, folder: Path, code: FilterDesign | None = None) -> Path:
@@ -41,6 +57,13 @@ def copied(folder: Path, destination: Path) -> Path:
     """Copy generated code, not what was built from it."""
     ignore = shutil.ignore_patterns("build", "firmware*")
     shutil.copytree(folder, destination, ignore=ignore)
+    return destination
+
+
+def own_main(folder: Path, destination: Path, program: str) -> Path:
+    """Copy generated code, and what was built from it, with another main.c; build it again."""
+    shutil.copytree(folder, destination)
+    (destination / "main.c").write_text(program, encoding="ascii")
     return destination
 
 

@@ -37,7 +37,9 @@ class Device:
         out[:, 2 : 2 + hidden.shape[1]] = hidden
         return out
 
-    def frames(self, samples: int, *, states: np.ndarray | None = None) -> list[bytes]:
+    def frames(
+        self, samples: int, *, states: np.ndarray | None = None, flags: int = 0
+    ) -> list[bytes]:
         """One heartbeat, then a sample each, with gapless frame numbers."""
         m = self.module
         accel, gyro = self.counts(samples)
@@ -55,7 +57,7 @@ class Device:
                     0,
                     0,
                     list(bytes.fromhex(self.digest)),
-                    int(k == 0),
+                    int(k == 0) | flags,
                     states[k, 2:].tolist(),
                 )
             )

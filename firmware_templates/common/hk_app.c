@@ -5,6 +5,7 @@
 
 #include "hk_command.h"
 #include "hk_design.h"
+#include "hk_flash.h"
 #include "hk_hal.h"
 #include "hk_notice.h"
 #include "hk_protocol.h"
@@ -150,6 +151,7 @@ static void poll_sensor(hk_app_t *app)
         app->sensor_status = MAV_STATE_CRITICAL;
         hk_app_notice(app, HK_NOTICE_REFUSED);
         break;
+    case HK_MPU6050_SELF_TESTED:
     case HK_MPU6050_NOTHING:
         break;
     }

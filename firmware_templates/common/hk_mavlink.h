@@ -10,8 +10,9 @@
 #define MAVLINK_NO_SIGNATURE_CHECK
 #define MAVLINK_MAX_PAYLOAD_LEN 80
 
-/* Angle brackets, so that -isystem applies: the generated headers do not stand strict warnings. */
-#include <hostkit/mavlink.h>
+/* The generated headers do not stand strict warnings. */
+#pragma GCC system_header
+#include "mavlink/hostkit/mavlink.h"
 
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "the structs are frames only where the lowest byte comes first"

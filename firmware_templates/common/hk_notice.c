@@ -31,6 +31,10 @@ static const char *what_happened(hk_mpu6050_kind_t kind)
         return HK_TEXT("frozen, restart");
     case HK_MPU6050_VARIANT:
         return HK_TEXT("WHO_AM_I ");
+    case HK_MPU6050_OVERFLOW:
+        return HK_TEXT("FIFO overflow");
+    case HK_MPU6050_MISALIGNED:
+        return HK_TEXT("FIFO misaligned");
     case HK_MPU6050_TRANSFER:
     case HK_MPU6050_KINDS:
         break;
@@ -40,10 +44,16 @@ static const char *what_happened(hk_mpu6050_kind_t kind)
 
 static uint8_t severity_of(hk_mpu6050_kind_t kind)
 {
-    const bool mild =
-        kind == HK_MPU6050_TORN || kind == HK_MPU6050_LOST_READY || kind == HK_MPU6050_VARIANT;
-
-    return mild ? MAV_SEVERITY_WARNING : MAV_SEVERITY_ERROR;
+    switch (kind) {
+    case HK_MPU6050_TORN:
+    case HK_MPU6050_LOST_READY:
+    case HK_MPU6050_VARIANT:
+    case HK_MPU6050_OVERFLOW:
+    case HK_MPU6050_MISALIGNED:
+        return MAV_SEVERITY_WARNING;
+    default:
+        return MAV_SEVERITY_ERROR;
+    }
 }
 
 /* One line: what happened, what was found, and how often so far. */

@@ -1,8 +1,10 @@
 /* The second-stage loader: makes the flash readable, then starts the program in it.
  *
  * The boot ROM copies these 256 bytes from the start of the flash to the end of the RAM, checks
- * their CRC and jumps to the first. The code must not care where it runs. The flash is read with
- * the plain command 03h, one bit wide, which every SPI flash of a Pico-like board knows. */
+ * their CRC and jumps to the first with a link register of 0. Whoever calls a copy as a function,
+ * after the flash was changed, gets it back readable. The code must not care where it runs. It
+ * changes r0 to r3 only. The flash is read with the plain command 03h, one bit wide, which every
+ * SPI flash of a Pico-like board knows. */
     .syntax unified
     .cpu cortex-m0plus
     .thumb
@@ -34,12 +36,18 @@
 hk_boot2:
     ldr  r0, =SSI
     adr  r1, settings
-    adr  r2, settings_end
 next:
-    ldmia r1!, {r3, r4}
-    str  r4, [r0, r3]
+    ldmia r1!, {r2, r3}
+    str  r3, [r0, r2]
+    adr  r2, settings_end
     cmp  r1, r2
     bne  next
+    mov  r0, lr
+    cmp  r0, #0
+    beq  start
+    bx   lr
+
+start:
     ldr  r0, =VECTORS
     ldr  r1, =VTOR
     str  r0, [r1]

@@ -55,8 +55,24 @@
 #define HK_RESET_TIMER       HK_BIT(21)
 #define HK_RESET_UART0       HK_BIT(22)
 
-/* Watchdog: its tick drives the timer; its scratch registers are free for any use */
+/* Power-on state machine: what the watchdog resets, by bit */
+#define HK_PSM_WDSEL         UINT32_C(0x40010008)
+#define HK_PSM_BUT_CLOCKS    UINT32_C(0x1FFFC) /* everything but both oscillators */
+
+/* Why the chip was reset */
+#define HK_CHIP_RESET        UINT32_C(0x40064008)
+#define HK_CHIP_HAD_RUN      HK_BIT(16) /* by the pin RUN */
+#define HK_CHIP_HAD_RESTART  HK_BIT(20) /* by a debugger */
+
+/* Watchdog: its tick drives the timer; the boot ROM reads its scratch registers 4 to 7 */
+#define HK_WATCHDOG_CTRL     UINT32_C(0x40058000)
+#define HK_WATCHDOG_LOAD     UINT32_C(0x40058004)
+#define HK_WATCHDOG_REASON   UINT32_C(0x40058008)
 #define HK_WATCHDOG_SCRATCH0 UINT32_C(0x4005800C)
+#define HK_WATCHDOG_SCRATCH1 UINT32_C(0x40058010)
+#define HK_WATCHDOG_TRIGGER  HK_BIT(31)
+#define HK_WATCHDOG_ENABLE   HK_BIT(30)
+#define HK_WATCHDOG_PAUSE    (UINT32_C(7) << 24) /* while a debugger halts a processor */
 #define HK_WATCHDOG_TICK     UINT32_C(0x4005802C)
 #define HK_TICK_ENABLE       HK_BIT(9)
 
@@ -120,12 +136,16 @@
 #define HK_UART0_IFLS        UINT32_C(0x40034034)
 #define HK_UART0_IMSC        UINT32_C(0x40034038)
 #define HK_UART0_ICR         UINT32_C(0x40034044)
+#define HK_UART_BAD          (UINT32_C(7) << 8) /* of a byte: framing, parity, break */
+#define HK_UART_RX_EMPTY     HK_BIT(4)
 #define HK_UART_TX_FULL      HK_BIT(5)
 #define HK_UART_8_BITS       (UINT32_C(3) << 5)
 #define HK_UART_FIFOS        HK_BIT(4)
-#define HK_UART_ENABLE       (HK_BIT(0) | HK_BIT(8)) /* the UART, and its transmitter */
+#define HK_UART_ENABLE       (HK_BIT(0) | HK_BIT(8) | HK_BIT(9)) /* both directions */
 #define HK_UART_TX_QUARTER   UINT32_C(1)
+#define HK_UART_RX_HALF      (UINT32_C(2) << 3)
 #define HK_UART_TX_INTERRUPT HK_BIT(5)
+#define HK_UART_RX_INTERRUPT (HK_BIT(4) | HK_BIT(6)) /* half full, or 32 bits of silence */
 
 /* Interrupts */
 #define HK_NVIC_ENABLE       UINT32_C(0xE000E100)

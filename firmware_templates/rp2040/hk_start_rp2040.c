@@ -30,7 +30,8 @@ typedef struct {
 
 extern const hk_vectors_t hk_vectors;
 
-/* An exception or interrupt that nobody expects ends here, so that a probe finds it. */
+/* An exception or interrupt that nobody expects ends here: a probe finds it, and without one the
+ * watchdog starts the board over. */
 void hk_trap(void)
 {
     for (;;) {

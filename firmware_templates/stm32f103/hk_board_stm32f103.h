@@ -1,14 +1,11 @@
-/* What the two halves of the board layer share: see hk_hal_stm32f103.c. */
+/* What the parts of the board layer share: see hk_hal_stm32f103.c. */
 #ifndef HK_BOARD_STM32F103_H
 #define HK_BOARD_STM32F103_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* The counter of timer 2 runs through so many microseconds. */
-#define HK_CLOCK_SHIFT 12
-#define HK_CLOCK_MASK  ((UINT32_C(1) << HK_CLOCK_SHIFT) - 1U)
-
-/* Microseconds from one reading of TIM2_CNT to now; good for spans below 4 ms. */
+/* Microseconds from one reading of TIM2_CNT to now; good for spans below 65 ms. */
 uint32_t hk_board_elapsed_us(uint32_t since);
 
 /* Hold interrupts off; release restores what hold returned. */
@@ -17,5 +14,16 @@ void hk_board_release(uint32_t held);
 
 /* Set up pin PB0 to PB7: four bits of GPIOB_CRL. */
 void hk_board_configure_low_pin(uint32_t pin, uint32_t mode);
+
+/* The link, which needs its clock. */
+void hk_board_start_link(void);
+bool hk_board_has_received(void);
+
+/* Once after every start: why it was; and the watchdog, which nothing stops any more. */
+void hk_board_find_reset_cause(void);
+void hk_board_start_watchdog(void);
+
+/* Begin again, as after a fault. */
+void hk_board_restart(void);
 
 #endif

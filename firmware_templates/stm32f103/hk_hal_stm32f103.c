@@ -1,12 +1,12 @@
-/* The hardware layer on an STM32F103 at 72 MHz, as on a Blue Pill: see hk_hal.h; I2C has its own
- * file.
+/* The hardware layer on an STM32F103 at 72 MHz, as on a Blue Pill: see hk_hal.h. I2C, link, store and
+ * reset have their own files.
  *
- * PB6 SCL, PB7 SDA, PB8 the sensor's INT pin, PA9 (TX of USART 1) the link, PA8 high while the filter
- * computes. Timer 2 is the clock. All interrupts have one priority, so none interrupts another. */
+ * PB6 SCL, PB7 SDA, PB8 the sensor's INT pin, PA9 and PA10 (TX and RX of USART 1) the link, PA8 high
+ * while the filter computes. Timer 2 is the clock, timer 3 ends the sleep every 4 ms. All interrupts
+ * have one priority, so none interrupts another. */
 #include "hk_hal.h"
 
 #include "hk_board_stm32f103.h"
-#include "hk_design.h"
 #include "hk_stm32f103.h"
 
 #if F_CPU != 72000000UL
@@ -15,6 +15,7 @@
 
 #define HK_MARK_PIN 8U
 #define HK_TX_PIN   9U
+#define HK_RX_PIN   10U
 #define HK_INT_PIN  8U
 #define HK_INT      HK_BIT(HK_INT_PIN)
 
@@ -32,6 +33,11 @@ void hk_board_release(uint32_t held)
 }
 
 /* --- Clock: timer 2 counts microseconds ------------------------------------------------------ */
+
+/* The counter of 16 bits wraps after 65.5 ms. That is longer than the flash takes to erase a page,
+ * while no interrupt can count the wrap. */
+#define HK_CLOCK_SHIFT 16
+#define HK_CLOCK_MASK  0xFFFFU
 
 static volatile uint32_t clock_overflows;
 
@@ -55,6 +61,16 @@ void hk_tim2(void)
         TIM2_SR = ~TIM_SR_UIF;
         clock_overflows++;
     }
+}
+
+/* Wakes the processor, and nothing else: one too many does no harm. */
+#define HK_TICK_US 4096U
+static volatile uint32_t ticks;
+
+void hk_tim3(void)
+{
+    TIM3_SR = ~TIM_SR_UIF;
+    ticks++;
 }
 
 uint32_t hk_hal_time_us(void)
@@ -102,56 +118,11 @@ bool hk_hal_data_ready(uint32_t *time_us)
     return true;
 }
 
-/* --- Link: a ring that the transmitter empties by interrupt --------------------------------- */
-
-#define HK_RING_SIZE 256U /* indices wrap by themselves */
-
-#define HK_BRR       ((F_CPU + HK_LINK_BAUD / 2UL) / HK_LINK_BAUD)
-#define HK_BAUD_MADE (F_CPU / HK_BRR)
-_Static_assert(HK_BAUD_MADE * 40UL <= HK_LINK_BAUD * 41UL
-                   && HK_BAUD_MADE * 40UL >= HK_LINK_BAUD * 39UL,
-               "the baud rate is more than 2.5 % off");
-
-#define HK_USART_ON (USART_CR1_UE | USART_CR1_TE)
-
-static uint8_t ring[HK_RING_SIZE];
-static volatile uint8_t ring_head; /* next free place */
-static volatile uint8_t ring_tail; /* next byte to send */
-
-void hk_usart1(void)
-{
-    const uint8_t tail = ring_tail;
-
-    if (tail == ring_head) {
-        USART1_CR1 = HK_USART_ON;
-    } else if ((USART1_SR & USART_SR_TXE) != 0U) {
-        USART1_DR = ring[tail];
-        ring_tail = (uint8_t)(tail + 1U);
-    }
-}
-
-bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
-{
-    uint8_t head = ring_head;
-    const uint8_t room = (uint8_t)(ring_tail - (uint8_t)(head + 1U));
-    uint8_t i;
-
-    if (count > room) {
-        return false;
-    }
-    for (i = 0U; i < count; i++) {
-        ring[head++] = bytes[i];
-    }
-    __asm__ volatile("" : : : "memory"); /* the bytes are there before the interrupt hears of them */
-    ring_head = head;
-    USART1_CR1 = HK_USART_ON | USART_CR1_TXEIE;
-    return true;
-}
-
 /* --- The rest ------------------------------------------------------------------------------- */
 
 /* The crystal of 8 MHz times nine; the flash needs two wait states, bus APB1 half the clock. Without
- * its crystal the board does not start: its link could not keep its rate. */
+ * its crystal the board does not start: its link could not keep its rate. The internal oscillator
+ * stays on, for the flash is programmed with it. */
 static void start_clock(void)
 {
     RCC_CR |= RCC_CR_HSEON;
@@ -166,7 +137,7 @@ static void start_clock(void)
     while ((RCC_CFGR & RCC_CFGR_SWS) != RCC_CFGR_SWS_PLL) {
     }
     RCC_APB2ENR = RCC_APB2_AFIO | RCC_APB2_GPIOA | RCC_APB2_GPIOB | RCC_APB2_USART1;
-    RCC_APB1ENR = RCC_APB1_TIM2 | RCC_APB1_I2C1;
+    RCC_APB1ENR = RCC_APB1_TIM2 | RCC_APB1_TIM3 | RCC_APB1_I2C1;
     (void)RCC_APB1ENR; /* two clocks pass before the peripherals listen */
 }
 
@@ -183,7 +154,7 @@ void hk_board_configure_low_pin(uint32_t pin, uint32_t mode)
 }
 
 /* The timers of APB1 run at twice its clock, hence at that of the core. */
-static void start_timer(void)
+static void start_timers(void)
 {
     TIM2_PSC = F_CPU / 1000000UL - 1U;
     TIM2_ARR = HK_CLOCK_MASK;
@@ -191,37 +162,53 @@ static void start_timer(void)
     TIM2_SR = ~TIM_SR_UIF;
     TIM2_DIER = TIM_DIER_UIE;
     TIM2_CR1 = TIM_CR1_CEN;
+    TIM3_PSC = F_CPU / 1000000UL - 1U;
+    TIM3_ARR = HK_TICK_US - 1U;
+    TIM3_EGR = TIM_EGR_UG;
+    TIM3_SR = ~TIM_SR_UIF;
+    TIM3_DIER = TIM_DIER_UIE;
+    TIM3_CR1 = TIM_CR1_CEN;
 }
 
-void hk_hal_init(void)
+/* RX is pulled up, so that an open pin stays silent. */
+static void start_pins(void)
 {
-    start_clock();
-    start_timer();
-    USART1_BRR = HK_BRR;
-    USART1_CR1 = HK_USART_ON;
     set_field(&GPIOA_CRH, HK_MARK_PIN, GPIO_PUSH_PULL);
     set_field(&GPIOA_CRH, HK_TX_PIN, GPIO_PERIPHERAL_PUSH_PULL);
-    set_field(&GPIOB_CRH, HK_INT_PIN, GPIO_PULLED_INPUT);
+    GPIOA_BSRR = HK_BIT(HK_RX_PIN);
+    set_field(&GPIOA_CRH, HK_RX_PIN, GPIO_PULLED_INPUT);
     GPIOB_BRR = HK_INT; /* pulled down */
+    set_field(&GPIOB_CRH, HK_INT_PIN, GPIO_PULLED_INPUT);
     AFIO_EXTICR3 = AFIO_EXTICR3_PORTB;
     EXTI_RTSR = HK_INT;
     EXTI_IMR = HK_INT;
+}
+
+/* The watchdog comes first: it also ends the wait for a crystal that does not start. */
+void hk_hal_init(void)
+{
+    hk_board_find_reset_cause();
+    hk_board_start_watchdog();
+    start_clock();
+    start_timers();
+    hk_board_start_link();
+    start_pins();
     hk_hal_i2c_recover();
-    NVIC_ISER0 = NVIC_EXTI9_5 | NVIC_TIM2;
+    NVIC_ISER0 = NVIC_EXTI9_5 | NVIC_TIM2 | NVIC_TIM3;
     NVIC_ISER1 = NVIC_USART1;
 }
 
-/* Sleep through the interrupts of the transmitter, until the clock's, every 4 ms, or a sample. WFI
- * ends for an interrupt that is held off too, so none is lost between the test and the sleep. */
+/* Sleep through the interrupts of the transmitter, until timer 3's, every 4 ms, a byte or a sample.
+ * WFI ends for an interrupt that is held off too, so none is lost between the test and the sleep. */
 void hk_hal_idle(void)
 {
-    const uint32_t overflows = clock_overflows;
+    const uint32_t tick = ticks;
     bool asleep = true;
 
     while (asleep) {
         const uint32_t held = hk_board_hold();
 
-        asleep = !sample_announced() && clock_overflows == overflows;
+        asleep = !sample_announced() && !hk_board_has_received() && ticks == tick;
         if (asleep) {
             __asm__ volatile("dsb\n\twfi" : : : "memory");
         }

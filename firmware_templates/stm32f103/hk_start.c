@@ -1,4 +1,5 @@
 /* Vector table and start-up of an STM32F103 of medium density: 43 interrupts after 15 exceptions. */
+#include "hk_board_stm32f103.h"
 #include "hk_stm32f103.h"
 
 /* From the linker script. */
@@ -19,12 +20,19 @@ typedef struct {
     hk_handler_t interrupt[43];
 } hk_vectors_t;
 
-/* A fault, or an interrupt that nobody asked for: begin again. */
-static void restart(void)
+/* What is still on its way to memory arrives before the reset. */
+void hk_board_restart(void)
 {
+    __asm__ volatile("dsb" : : : "memory");
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;) {
     }
+}
+
+/* A fault, or an interrupt that nobody asked for. */
+static void restart(void)
+{
+    hk_board_restart();
 }
 
 #define HK_FIVE_RESTARTS restart, restart, restart, restart, restart
@@ -36,7 +44,7 @@ __attribute__((section(".vectors"), used)) static const hk_vectors_t vectors = {
         {
             HK_FIVE_RESTARTS, HK_FIVE_RESTARTS, HK_FIVE_RESTARTS, HK_FIVE_RESTARTS, /* 0 to 19 */
             restart, restart, restart, hk_exti9_5, restart,                         /* 20 to 24 */
-            restart, restart, restart, hk_tim2, restart,                            /* 25 to 29 */
+            restart, restart, restart, hk_tim2, hk_tim3,                            /* 25 to 29 */
             HK_FIVE_RESTARTS, restart, restart, hk_usart1, restart, restart,        /* 30 to 39 */
             restart, restart, restart,                                              /* 40 to 42 */
         },

@@ -13,6 +13,7 @@
 #define RCC_CFGR    HK_MMIO(0x40021004)
 #define RCC_APB2ENR HK_MMIO(0x40021018)
 #define RCC_APB1ENR HK_MMIO(0x4002101C)
+#define RCC_CSR     HK_MMIO(0x40021024)
 
 #define RCC_CR_HSEON  HK_BIT(16)
 #define RCC_CR_HSERDY HK_BIT(17)
@@ -31,11 +32,46 @@
 #define RCC_APB2_GPIOB  HK_BIT(3)
 #define RCC_APB2_USART1 HK_BIT(14)
 #define RCC_APB1_TIM2   HK_BIT(0)
+#define RCC_APB1_TIM3   HK_BIT(1)
 #define RCC_APB1_I2C1   HK_BIT(21)
 
-#define FLASH_ACR               HK_MMIO(0x40022000)
-#define FLASH_ACR_TWO_WAITS     UINT32_C(2)
-#define FLASH_ACR_PREFETCH      HK_BIT(4)
+#define RCC_CSR_RMVF     HK_BIT(24)
+#define RCC_CSR_PORRSTF  HK_BIT(27)
+#define RCC_CSR_SFTRSTF  HK_BIT(28)
+#define RCC_CSR_IWDGRSTF HK_BIT(29)
+#define RCC_CSR_WWDGRSTF HK_BIT(30)
+#define RCC_CSR_LPWRRSTF HK_BIT(31)
+
+#define FLASH_ACR  HK_MMIO(0x40022000)
+#define FLASH_KEYR HK_MMIO(0x40022004)
+#define FLASH_SR   HK_MMIO(0x4002200C)
+#define FLASH_CR   HK_MMIO(0x40022010)
+#define FLASH_AR   HK_MMIO(0x40022014)
+
+#define FLASH_ACR_TWO_WAITS UINT32_C(2)
+#define FLASH_ACR_PREFETCH  HK_BIT(4)
+#define FLASH_KEY1          UINT32_C(0x45670123)
+#define FLASH_KEY2          UINT32_C(0xCDEF89AB)
+#define FLASH_SR_BSY        HK_BIT(0)
+#define FLASH_SR_PGERR      HK_BIT(2)
+#define FLASH_SR_WRPRTERR   HK_BIT(4)
+#define FLASH_SR_EOP        HK_BIT(5)
+#define FLASH_CR_PG         HK_BIT(0)
+#define FLASH_CR_PER        HK_BIT(1)
+#define FLASH_CR_STRT       HK_BIT(6)
+#define FLASH_CR_LOCK       HK_BIT(7)
+
+/* --- The independent watchdog --------------------------------------------------------------- */
+
+#define IWDG_KR  HK_MMIO(0x40003000)
+#define IWDG_PR  HK_MMIO(0x40003004)
+#define IWDG_RLR HK_MMIO(0x40003008)
+
+#define IWDG_KR_RELOAD UINT32_C(0xAAAA)
+#define IWDG_KR_UNLOCK UINT32_C(0x5555)
+#define IWDG_KR_START  UINT32_C(0xCCCC)
+#define IWDG_PR_BY_32  UINT32_C(3)
+#define IWDG_RLR_MAX   0xFFFU
 
 /* --- Pins and their interrupts: four bits configure a pin, eight pins to a register ----------- */
 
@@ -60,7 +96,7 @@
 #define EXTI_RTSR HK_MMIO(0x40010408)
 #define EXTI_PR   HK_MMIO(0x40010414)
 
-/* --- Timer 2 --------------------------------------------------------------------------------- */
+/* --- Timers 2 and 3 -------------------------------------------------------------------------- */
 
 #define TIM2_CR1  HK_MMIO(0x40000000)
 #define TIM2_DIER HK_MMIO(0x4000000C)
@@ -69,6 +105,13 @@
 #define TIM2_CNT  HK_MMIO(0x40000024)
 #define TIM2_PSC  HK_MMIO(0x40000028)
 #define TIM2_ARR  HK_MMIO(0x4000002C)
+
+#define TIM3_CR1  HK_MMIO(0x40000400)
+#define TIM3_DIER HK_MMIO(0x4000040C)
+#define TIM3_SR   HK_MMIO(0x40000410)
+#define TIM3_EGR  HK_MMIO(0x40000414)
+#define TIM3_PSC  HK_MMIO(0x40000428)
+#define TIM3_ARR  HK_MMIO(0x4000042C)
 
 #define TIM_CR1_CEN  HK_BIT(0)
 #define TIM_DIER_UIE HK_BIT(0)
@@ -109,10 +152,15 @@
 #define USART1_BRR HK_MMIO(0x40013808)
 #define USART1_CR1 HK_MMIO(0x4001380C)
 
-#define USART_SR_TXE    HK_BIT(7)
-#define USART_CR1_TE    HK_BIT(3)
-#define USART_CR1_TXEIE HK_BIT(7)
-#define USART_CR1_UE    HK_BIT(13)
+#define USART_SR_FE      HK_BIT(1)
+#define USART_SR_ORE     HK_BIT(3)
+#define USART_SR_RXNE    HK_BIT(5)
+#define USART_SR_TXE     HK_BIT(7)
+#define USART_CR1_RE     HK_BIT(2)
+#define USART_CR1_TE     HK_BIT(3)
+#define USART_CR1_RXNEIE HK_BIT(5)
+#define USART_CR1_TXEIE  HK_BIT(7)
+#define USART_CR1_UE     HK_BIT(13)
 
 /* --- The core -------------------------------------------------------------------------------- */
 
@@ -123,6 +171,7 @@
 
 #define NVIC_EXTI9_5 HK_BIT(23)      /* in ISER0 */
 #define NVIC_TIM2    HK_BIT(28)      /* in ISER0 */
+#define NVIC_TIM3    HK_BIT(29)      /* in ISER0 */
 #define NVIC_USART1  HK_BIT(37 - 32) /* in ISER1 */
 
 #define SCB_AIRCR_RESET  UINT32_C(0x05FA0004)
@@ -132,6 +181,7 @@
 void hk_reset(void);
 void hk_exti9_5(void);
 void hk_tim2(void);
+void hk_tim3(void);
 void hk_usart1(void);
 
 #endif

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from hostkit.cli.firmware_options import chosen_options, firmware_options
 from hostkit.cli.generate import TARGET
 from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
@@ -21,7 +22,7 @@ from hostkit.emulation.run import emulate as run_emulation
 from hostkit.errors import VerdictError
 from hostkit.recordings import Recording, load
 from hostkit.records import FilterDesign
-from hostkit.render import generate, target_of, write
+from hostkit.render import DEFAULT_OPTIONS, FirmwareOptions, generate, target_of, write
 from hostkit.targets import TARGETS, Target
 from hostkit.tuning.evaluation import require_rate
 
@@ -57,6 +58,7 @@ from hostkit.tuning.evaluation import require_rate
     + ", ".join(kind.name for kind in KINDS)
     + ".",
 )
+@firmware_options
 @JSON
 def emulate(
     design_file: Path,
@@ -74,6 +76,9 @@ def emulate(
     recording is played over and over. With --fault samples may be lost, but the firmware must
     notice and recover, and every sample that it sends must be right.
 
+    The firmware is rendered with the options given here; --code has those that it was made with. A
+    filter that computes in float is held against the float model instead, within 1e-5 rad.
+
     \b
     Example:
       hostkit emulate design.json --target atmega328p --recording sweep.csv
@@ -84,11 +89,16 @@ def emulate(
     if pty and faults:
         raise click.UsageError("--fault needs a run that ends; --pty has no end")
     design, target = read_design(design_file), TARGETS[target_name]
+    options = chosen_options()
+    if code is not None and options is not None:
+        raise click.UsageError(
+            f"{code} has the options that it was made with; give none, or no DIR"
+        )
     recording = load(recording_file)
     require_rate(design.rate_hz, recording)
     if pty and target.kind == "fpga":
         raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")
-    with code_folder(design, target, code) as folder:
+    with code_folder(design, target, code, options or DEFAULT_OPTIONS) as folder:
         built = build(folder, target)
         if pty:
             serve(folder, target, design, recording)
@@ -103,13 +113,15 @@ def emulate(
         raise VerdictError(f"{target.name} did not recover; it says: {_texts(result.fault_report)}")
     if not result.passed:
         raise VerdictError(
-            f"{result.mismatches} of {result.samples} samples differ from the integer model, "
+            f"{result.mismatches} of {result.samples} samples differ from the {_model(result)}, "
             f"{result.missing} did not come back"
         )
 
 
 @contextlib.contextmanager
-def code_folder(design: FilterDesign, target: Target, code: Path | None) -> Iterator[Path]:
+def code_folder(
+    design: FilterDesign, target: Target, code: Path | None, options: FirmwareOptions
+) -> Iterator[Path]:
     """Give the folder with the code: the user's, or one that is rendered and then removed."""
     if code is not None:
         if target_of(code) is not target:
@@ -117,7 +129,7 @@ def code_folder(design: FilterDesign, target: Target, code: Path | None) -> Iter
         yield code
         return
     with tempfile.TemporaryDirectory(prefix="hostkit-") as name:
-        write(generate(design, target), Path(name))
+        write(generate(design, target, options), Path(name))
         yield Path(name)
 
 
@@ -152,12 +164,15 @@ def emulation_document(
     """Return the result as the document ``hostkit.emulate/1``."""
     error = result.max_abs_error_rad
     sizes = built if isinstance(built, BuildResult) else None
+    in_float = result.tolerance_rad is not None
     return {
         "schema": "hostkit.emulate/1",
         "target": result.target,
         "samples": result.samples,
         "missing": result.missing,
-        "mismatches": result.mismatches,
+        "mismatches": None if in_float else result.mismatches,
+        "beyond_tolerance": result.mismatches if in_float else None,
+        "tolerance_rad": result.tolerance_rad,
         "max_abs_error_deg": None if error is None else math.degrees(error),
         "cycles_per_update": {
             "mean": result.cycles_mean,
@@ -187,6 +202,12 @@ def _report_document(report: FaultReport | None) -> dict[str, object]:
     }
 
 
+def _model(result: EmulationResult) -> str:
+    if result.tolerance_rad is None:
+        return "integer model"
+    return f"float model by more than {result.tolerance_rad:g} rad, or in their counts"
+
+
 def _texts(report: FaultReport) -> str:
     return "; ".join(report.texts) or "nothing"
 
@@ -194,9 +215,12 @@ def _texts(report: FaultReport) -> str:
 def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None:
     error = result.max_abs_error_rad
     shown = "none" if error is None else f"{math.degrees(error):.6f} deg"
+    differing = "mismatches"
+    if result.tolerance_rad is not None:
+        differing = f"beyond {result.tolerance_rad:g} rad (float: no bits are compared)"
     click.echo(
         f"{result.target}: {result.samples} samples, {result.missing} missing, "
-        f"{result.mismatches} mismatches; largest difference to the float model {shown}"
+        f"{result.mismatches} {differing}; largest difference to the float model {shown}"
     )
     if result.cycles_mean is not None:
         cost = f"{result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max"

@@ -40,6 +40,8 @@ HEADER_FOLDER = "mavlink"
 DIALECT = "hostkit"
 FRAME_OVERHEAD_BYTES = 12
 """Header and checksum of an unsigned MAVLink 2 frame."""
+SIGNATURE_BYTES = 13
+"""What a signature adds to a frame."""
 HIDDEN_WORDS = 2
 """Words that ``TILT_SAMPLE`` has for the state of a filter beside its angles."""
 HIDDEN_WORD_BYTES = 4

@@ -48,10 +48,21 @@ KINDS = tuple(
             ("self-reset", 0, "the supply dips and the sensor resets"),
             ("frozen-data", 0, "the data stay as they are until a reset"),
             ("lost-data-ready", 100, "samples that the INT pin does not announce"),
+            ("fifo-overflow", 80, "times that a sample enters the FIFO once more"),
+            ("torn-count", 0x6A, "the high byte that the FIFO count reads once"),
+            ("misaligned", 1, "bytes that are lost from the FIFO"),
+            ("brown-out-write", 5, "register writes before the one in which the supply dips"),
+            ("stuck-value", 0x3205, "samples times 256 plus the axis that stays as it is"),
+            ("saturated-axis", 0x3205, "samples times 256 plus the axis at the end of its range"),
+            ("weak-response", 50, "percent of the factory trim that the self-test answers with"),
+            ("no-trim", 0, "the factory codes of the self-test read 0"),
         )
     )
 )
-"""Every kind, in the order of the virtual sensor's codes."""
+"""Every kind, in the order of the virtual sensor's codes.
+
+Axes 0 to 2 are the accelerometer's, 3 to 5 the gyroscope's; 0 samples last until a reset.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

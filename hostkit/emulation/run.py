@@ -1,14 +1,12 @@
 """Running generated code on a recording, and holding what it says against the models."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hostkit.attitude import wrap_rad
 from hostkit.design_file import digest
 from hostkit.emulation import avr_board, ghdl, host_board, rp2040_board, stm32_board
 from hostkit.emulation.board import (
@@ -19,30 +17,32 @@ from hostkit.emulation.board import (
     Stimulus,
     Stop,
 )
-from hostkit.emulation.fault import Fault, planned_faults
-from hostkit.emulation.fault_report import (
-    FaultReport,
-    answers_of_models,
-    is_active,
-    last_errors,
-    repeats,
-    rows_of,
-    said,
+from hostkit.emulation.comparison import (
+    FLOAT_TOLERANCE_RAD,
+    Answer,
+    EmulationResult,
+    compare,
+    compare_with_faults,
 )
+from hostkit.emulation.fault import Fault, planned_faults
+from hostkit.emulation.fault_report import said
 from hostkit.errors import EmulationError, HostkitError
 from hostkit.filters import FILTERS
 from hostkit.link.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
-from hostkit.records import AXES, AngleTrace, FilterDesign, read_only
+from hostkit.records import AXES, AngleTrace, FilterDesign
+from hostkit.render import FirmwareOptions, read_manifest
+from hostkit.render.link_plan import link_of
 from hostkit.sensors import SENSORS
-from hostkit.sensors.counts import Counts, to_counts, to_rate_and_force_g
+from hostkit.sensors.counts import Counts, to_counts
 from hostkit.sensors.mpu6050 import TEMPERATURE_COUNTS_PER_DEG_C, settle_samples
 from hostkit.targets import Target
-from hostkit.units import RAD_PER_HALF_TURN_LSB
 
-Vector = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+__all__ = ["EmulationResult", "board_of", "build", "emulate", "stimulus_of"]
+
 Progress = Callable[[int], None]
+RETUNED = 4
+"""Flag of a TILT_SAMPLE: the filter runs with other parameters than the design's."""
 
 
 class Board(Protocol):
@@ -71,77 +71,6 @@ BOARDS: dict[str, Board] = {
 """Emulated boards of the microcontroller targets."""
 
 ROOM_TEMPERATURE_DEG_C = 25.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EmulationResult:
-    """What a target answered to a recording.
-
-    Attributes
-    ----------
-    samples, missing
-        Samples that came back, and samples of the recording that did not.
-    mismatches
-        Samples whose raw counts or state differ from the integer model's.
-    residual_rad
-        Device minus float model, shape ``(samples, A)``.
-    cycles_mean, cycles_max
-        Cost of a filter update; None where nothing counts it.
-    stack_bytes
-        Deepest stack; None where nothing measures it.
-    faults
-        What went wrong on the board, by name.
-    fault_report
-        What became of the faults that were asked for; None if none were.
-    cost_unit
-        What the cost is counted in: clock ``cycles``, or ``instructions`` where the emulator
-        knows no cycles.
-    """
-
-    target: str
-    samples: int
-    missing: int
-    mismatches: int
-    residual_rad: Vector
-    cycles_mean: float | None
-    cycles_max: float | None
-    stack_bytes: int | None
-    faults: tuple[tuple[str, int], ...]
-    fault_report: FaultReport | None = None
-    cost_unit: str = "cycles"
-
-    def __post_init__(self) -> None:
-        """Make the array read-only."""
-        read_only(self.residual_rad)
-
-    @property
-    def max_abs_error_rad(self) -> float | None:
-        """Largest residual, or None if nothing came back."""
-        return float(np.abs(self.residual_rad).max()) if self.residual_rad.size else None
-
-    @property
-    def passed(self) -> bool:
-        """Whether every sample came back as the integer model says.
-
-        A run with faults may lose samples, but must recover, and what it sends must be right.
-        """
-        if self.fault_report is not None:
-            return self.fault_report.recovered and self.mismatches == 0
-        return self.samples > 0 and self.missing == 0 and self.mismatches == 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Answer:
-    """Rows of the recording that came back, with counts and states."""
-
-    row: IntArray
-    counts: Counts
-    state_raw: IntArray
-    cycles_mean: float | None
-    cycles_max: float | None
-    stack_bytes: int | None = None
-    faults: tuple[tuple[str, int], ...] = ()
-    cost_unit: str = "cycles"
 
 
 def build(folder: Path, target: Target) -> BuildResult | tuple[str, ...]:
@@ -225,26 +154,45 @@ def emulate(
     counts = to_counts(
         part, design.sensor, recording.angular_rate_rad_s, recording.specific_force_m_s2
     )
-    if faults:
-        if target.kind == "fpga":
-            raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
-        planned = planned_faults(faults, len(recording), design.rate_hz)
-        stimulus = replace(stimulus_of(design, recording), faults=planned)
-        run = board_of(target).run(folder, stimulus, progress=progress)
-        return _compare_with_faults(target, design, counts, run, faults)
     if target.kind == "fpga":
-        answer = _simulate(folder, design, counts, progress)
-    else:
-        answer = _run(folder, target, design, recording, progress)
-    return _compare(target, design, counts, answer)
+        if faults:
+            raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
+        return compare(target, design, counts, _simulate(folder, design, counts, progress))
+    options = read_manifest(folder).options
+    every = _every(design, target, options)
+    tolerance_rad = FLOAT_TOLERANCE_RAD if options.arithmetic == "float" else None
+    stimulus = stimulus_of(design, recording)
+    if faults:
+        if every > 1:
+            raise EmulationError(
+                f"TILT_SAMPLE goes out with every {every}th sample; a run with faults is judged "
+                f"only if it goes out with every one: TILT_SAMPLE={design.rate_hz:g}"
+            )
+        planned = planned_faults(faults, len(recording), design.rate_hz)
+        run = board_of(target).run(folder, replace(stimulus, faults=planned), progress=progress)
+        heard = _heard(run, target, design)
+        return compare_with_faults(target, design, counts, run, heard, faults, tolerance_rad)
+    run = board_of(target).run(folder, stimulus, progress=progress)
+    answer = _answer(run, target, design)
+    return compare(
+        target, design, counts, replace(answer, every=every, tolerance_rad=tolerance_rad)
+    )
+
+
+def _every(design: FilterDesign, target: Target, options: FirmwareOptions) -> int:
+    """Return with every how-many-th sample a TILT_SAMPLE goes out."""
+    every = link_of(design, target, options).every("TILT_SAMPLE")
+    if not every:
+        raise EmulationError("TILT_SAMPLE is off, so the device says nothing that can be judged")
+    return every
 
 
 def _simulate(
     folder: Path, design: FilterDesign, counts: Counts, progress: Progress | None
-) -> _Answer:
+) -> Answer:
     run = ghdl.simulate(folder, counts.accel, counts.gyro, progress=progress)
     _require_digest(run.design_digest, design)
-    return _Answer(
+    return Answer(
         row=np.arange(len(counts)),
         counts=counts,
         state_raw=run.state_raw(FILTERS[design.filter].lower(design)),
@@ -253,22 +201,15 @@ def _simulate(
     )
 
 
-def _run(
-    folder: Path,
-    target: Target,
-    design: FilterDesign,
-    recording: Recording,
-    progress: Progress | None,
-) -> _Answer:
-    run = board_of(target).run(folder, stimulus_of(design, recording), progress=progress)
-    frames, trace = _heard(run, design)
+def _answer(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
+    frames, trace = _heard(run, target, design)
     if not len(trace):
         texts = said(frames)
         raise EmulationError(
             f"{target.name} sent {len(frames)} messages but no sample"
             + (f"; it says: {texts[-1]!r}" if texts else "")
         )
-    return _Answer(
+    return Answer(
         row=trace.sequence,
         counts=Counts(accel=trace.accel_count, gyro=trace.gyro_count),
         state_raw=trace.state_raw,
@@ -280,11 +221,18 @@ def _run(
     )
 
 
-def _heard(run: BoardRun, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+def _heard(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
     frames = Decoder().feed(run.stream)
-    for frame in frames:
-        if frame.name == "TILT_SAMPLE":
-            _require_digest(bytes(frame.message.digest).hex(), design)
+    samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
+    for message in samples:
+        _require_digest(bytes(message.digest).hex(), design)
+    retuned = sum(bool(message.flags & RETUNED) for message in samples)
+    if retuned:
+        raise EmulationError(
+            f"{target.name} runs other parameters than the design in {retuned} of {len(samples)} "
+            "samples (flag RETUNED): they were set, calibrated or stored, so the design's models "
+            "cannot judge them"
+        )
     hidden_words = len(FILTERS[design.filter].lower(design).hidden)
     return frames, trace_of(frames, AXES[design.axes], hidden_words=hidden_words)
 
@@ -294,67 +242,3 @@ def _require_digest(found: str, design: FilterDesign) -> None:
         raise EmulationError(
             f"the code runs design {found}, not {digest(design)}: generate it again"
         )
-
-
-def _compare(
-    target: Target, design: FilterDesign, counts: Counts, answer: _Answer
-) -> EmulationResult:
-    filter_, part = FILTERS[design.filter], SENSORS[design.sensor.part]
-    wanted = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
-    axes = len(AXES[design.axes])
-    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))[:, :axes]
-    inside = (answer.row >= 0) & (answer.row < len(counts))
-    row = np.where(inside, answer.row, 0)
-    wrong = (
-        ~inside
-        | (answer.state_raw != wanted[row]).any(axis=1)
-        | (answer.counts.accel != counts.accel[row]).any(axis=1)
-        | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
-    )
-    return EmulationResult(
-        target=target.name,
-        samples=len(answer.row),
-        missing=len(counts) - len(np.unique(answer.row[inside])),
-        mismatches=int(wrong.sum()),
-        residual_rad=wrap_rad(answer.state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact[row]),
-        cycles_mean=answer.cycles_mean,
-        cycles_max=answer.cycles_max,
-        stack_bytes=answer.stack_bytes,
-        faults=answer.faults,
-        cost_unit=answer.cost_unit,
-    )
-
-
-def _compare_with_faults(
-    target: Target, design: FilterDesign, counts: Counts, run: BoardRun, faults: tuple[Fault, ...]
-) -> EmulationResult:
-    """Hold what came back against the models, run anew from every restart that the device tells."""
-    frames, trace = _heard(run, design)
-    sent = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
-    elapsed = np.diff(trace.time_us, prepend=0) * 1e-6 * design.rate_hz
-    row = rows_of(sent, counts, np.ceil(elapsed).astype(np.int64))
-    repeated = repeats(sent) & (row < 0)
-    wanted, exact = answers_of_models(design, sent, trace.restarted)
-    axes = len(AXES[design.axes])
-    wrong = (trace.state_raw != wanted).any(axis=1) | ((row < 0) & ~repeated)
-    return EmulationResult(
-        target=target.name,
-        samples=len(trace),
-        missing=len(counts) - int((row >= 0).sum()),
-        mismatches=int(wrong.sum()),
-        residual_rad=wrap_rad(trace.state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact),
-        cycles_mean=run.cycles_mean,
-        cycles_max=run.cycles_max,
-        stack_bytes=run.stack_bytes,
-        faults=run.faults,
-        cost_unit=run.cost_unit,
-        fault_report=FaultReport(
-            injected=tuple(str(fault) for fault in faults),
-            struck=dict(run.faults).get("struck", 0),
-            errors=last_errors(frames),
-            restarts=max(int(trace.restarted.sum()) - 1, 0),
-            texts=said(frames),
-            repeated=int(repeated.sum()),
-            recovered=bool(len(row) and row[-1] == len(counts) - 1 and is_active(frames)),
-        ),
-    )

@@ -5,6 +5,7 @@ nothing else needs and that nothing is linked with.
 """
 
 import dataclasses
+import re
 import tempfile
 import time
 from collections.abc import Iterator
@@ -27,15 +28,17 @@ from hostkit.emulation.image import build_image
 from hostkit.emulation.playback import require_end
 from hostkit.emulation.virtual_sensor import VirtualSensor, compile_shared
 from hostkit.errors import BuildError, EmulationError, ToolMissingError
-from hostkit.targets.stm32f103 import STM32F103
 
 if TYPE_CHECKING:
     from hostkit.emulation.stm32.machine import Machine
 
 IMAGE = "firmware.bin"
+HEADER = "hk_design.h"
+BAUD = re.compile(r"^#define HK_LINK_BAUD +(\d+)", re.MULTILINE)
 STALL_S = 5.0
 SLICE_S = 0.1
 UNARMED_SLICE_S = 0.001
+FAULT_SLICE_S = 0.01
 REALTIME_SLICE_S = 0.005
 LAG_LIMIT_S = 1.0
 PROGRESS_S = 0.25
@@ -100,6 +103,7 @@ def serve(
             lag_s = due_s - machine.time.now_s
             if lag_s > LAG_LIMIT_S:
                 origin_s += lag_s  # the host was busy: go on from here
+            machine.receive(receive())
             machine.run(min(max(lag_s, 0.0), REALTIME_SLICE_S))
             faults.arm()
             if machine.link:
@@ -126,7 +130,23 @@ def _machine(folder: Path, stimulus: Stimulus) -> Iterator["Machine"]:
         library = Path(name) / "virtual_mpu6050.so"
         compile_shared(folder, library)
         sensor = VirtualSensor(library, stimulus)
-        yield Machine(image.read_bytes(), sensor, receiver_baud=STM32F103.baud)
+        yield Machine(
+            image.read_bytes(),
+            sensor,
+            peer_baud=_baud(folder),
+            store=stimulus.store,
+            power_cut_after=stimulus.power_cut_after,
+            received=() if stimulus.loop else stimulus.received,
+        )
+
+
+def _baud(folder: Path) -> int:
+    """Return the rate of the link, bit/s, that the generated code is made for."""
+    header = folder / HEADER
+    found = BAUD.search(header.read_text(encoding="ascii")) if header.is_file() else None
+    if found is None:
+        raise BuildError(f"{header} has no HK_LINK_BAUD; generate the code again")
+    return int(found[1])
 
 
 class _Faults:
@@ -143,7 +163,13 @@ class _Faults:
                 raise EmulationError(f"the virtual sensor cannot plan {fault}")
         self.arm()
 
+    @property
+    def planned(self) -> bool:
+        """Whether the sensor carries out faults by itself."""
+        return bool(self._faults.planned)
+
     def arm(self) -> None:
+        """Begin what begins at a row, if it has come."""
         sensor = self._machine.sensor
         if self.armed or sensor.rows_played < self._faults.from_row:
             return
@@ -155,7 +181,8 @@ class _Faults:
 
 def _run_to_end(machine: "Machine", faults: _Faults, progress: Progress | None) -> bool:
     """Run until the machine has finished; return whether it took no more rows instead."""
-    slice_s = SLICE_S if faults.armed else UNARMED_SLICE_S
+    armed_slice_s = FAULT_SLICE_S if faults.planned else SLICE_S
+    slice_s = armed_slice_s if faults.armed else UNARMED_SLICE_S
     row, since_s, told_s = -1, 0.0, time.monotonic()
     while not machine.finished:
         machine.run(slice_s)
@@ -176,6 +203,7 @@ def _board_run(machine: "Machine", stalled: bool) -> BoardRun:
         "unread_samples": sensor.unread_samples,
         "stalled": int(stalled),
         "struck": sensor.struck,
+        "resets": machine.resets,
     }
     return BoardRun(
         stream=bytes(machine.link),
@@ -184,4 +212,5 @@ def _board_run(machine: "Machine", stalled: bool) -> BoardRun:
         cost_unit=COST_UNIT,
         stack_bytes=machine.stack_bytes,
         faults=tuple((name, count) for name, count in faults.items() if count),
+        store=bytes(machine.store.data),
     )

@@ -10,7 +10,7 @@ from hostkit.emulation.board import PlannedFault, Stimulus
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError
 
-SOURCE = "hk_virtual_mpu6050.c"
+SOURCES = "hk_virtual_*.c"
 PREFIX = "hk_virtual_mpu6050_"
 TIMEOUT_S = 60.0
 COMMON = ("-O2", "-std=c99", "-ffreestanding", "-fno-builtin", "-ffp-contract=off")
@@ -49,7 +49,10 @@ def compile_shared(folder: Path, output: Path) -> None:
 
 
 def _compile(compiler: str, *options: str, folder: Path, output: Path) -> None:
-    command = [compiler, *options, *COMMON, "-o", str(output), str(folder / SOURCE)]
+    sources = sorted(str(source) for source in folder.glob(SOURCES))
+    if not sources:
+        raise BuildError(f"there is no virtual sensor in {folder}: no {SOURCES}")
+    command = [compiler, *options, *COMMON, "-o", str(output), *sources]
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
@@ -58,7 +61,9 @@ def _compile(compiler: str, *options: str, folder: Path, output: Path) -> None:
         raise BuildError(f"{compiler} did not end within {TIMEOUT_S:g} s") from error
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if "error" in line]
-        raise BuildError(f"{SOURCE} does not compile: {(lines or [done.stderr.strip()])[0]}")
+        raise BuildError(
+            f"the virtual sensor does not compile: {(lines or [done.stderr.strip()])[0]}"
+        )
 
 
 class VirtualSensor:
@@ -89,7 +94,7 @@ class VirtualSensor:
         )
 
     def _function(self, name: str, result: type | None) -> "ctypes._NamedFuncPointer":
-        function = self._library[PREFIX + name]
+        function: ctypes._NamedFuncPointer = getattr(self._library, PREFIX + name)
         function.restype = result
         return function
 
@@ -119,6 +124,26 @@ class VirtualSensor:
     def set_self_test(self, codes: tuple[int, int, int, int]) -> None:
         """Set the factory codes, as the registers SELF_TEST_X to SELF_TEST_A hold them."""
         self._function("set_self_test", None)(self._self, *(ctypes.c_uint8(c) for c in codes))
+
+    def set_response(self, axis: int, share: float) -> None:
+        """Let the self-test of an axis answer with a share of the factory trim.
+
+        Axes 0 to 2 are the accelerometer's, 3 to 5 the gyroscope's.
+        """
+        words = (ctypes.c_uint32(axis), ctypes.c_double(share))
+        self._function("set_response", None)(self._self, *words)
+
+    def set_settling(self, settling_ns: int) -> None:
+        """Set how long the response of the self-test takes to come."""
+        self._function("set_settling", None)(self._self, ctypes.c_uint64(settling_ns))
+
+    def set_ad0(self, *, high: bool) -> None:
+        """Set the level of the AD0 pin: the address is 0x68, or 0x69 if it is high."""
+        self._function("set_ad0", None)(self._self, ctypes.c_bool(high))
+
+    def feel_motion(self, row_period_ns: int) -> None:
+        """Take the rows for motion that is sampled and filtered, one every period."""
+        self._function("feel_motion", None)(self._self, ctypes.c_uint64(row_period_ns))
 
     @property
     def stretch_ns(self) -> int:
@@ -160,6 +185,16 @@ class VirtualSensor:
     def int_pin(self) -> bool:
         """Level of the interrupt pin."""
         return bool(self._function("int_pin", ctypes.c_bool)(self._self))
+
+    @property
+    def int_driven(self) -> bool:
+        """Whether the sensor drives the interrupt pin: an open drain that is not low does not."""
+        return bool(self._function("int_driven", ctypes.c_bool)(self._self))
+
+    @property
+    def announced_ns(self) -> int:
+        """When the interrupt pin rose last."""
+        return int(self._function("published_ns", ctypes.c_uint64)(self._self))
 
     @property
     def next_event_ns(self) -> int:

@@ -109,3 +109,8 @@ def trace_of(frames: list[Frame], axes: tuple[Axis, ...], *, hidden_words: int =
 def digest_of(frame: Frame) -> str:
     """Return the design digest of a ``TILT_SAMPLE``, 12 hex digits."""
     return bytes(frame.message.digest).hex()
+
+
+def is_retuned(frame: Frame) -> bool:
+    """Tell whether a ``TILT_SAMPLE`` was made with other parameters than those of its design."""
+    return bool(frame.message.flags & python_module().HOSTKIT_SAMPLE_RETUNED)

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from hostkit.design_file import digest
 from hostkit.errors import DeviceError
-from hostkit.link.decoder import Decoder, Frame, Source, digest_of, trace_of
+from hostkit.link.decoder import Decoder, Frame, Source, digest_of, is_retuned, trace_of
 from hostkit.link.transport import Transport
 from hostkit.records import AXES, FilterDesign, LinkStatistics, ValidationReport
 from hostkit.validation import Thresholds, Validator
@@ -83,6 +83,7 @@ class Session:
     validator: Validator = field(init=False)
     _source: Source | None = None
     _other_digest: str | None = None
+    _retuned: bool = False
     _heard: bytes = b""
     _status_text: str = ""
 
@@ -102,7 +103,7 @@ class Session:
         last_sample = begun
         first_sample: float | None = None
         try:
-            while self._other_digest is None:
+            while self._other_digest is None and not self._retuned:
                 data = self.transport.read(POLL_S)
                 now = self.clock.monotonic()
                 if data is None:
@@ -121,7 +122,9 @@ class Session:
                 raise
         ended = self.clock.monotonic()
         return SessionResult(
-            report=self.validator.report(self.thresholds, other_digest=self._other_digest),
+            report=self.validator.report(
+                self.thresholds, other_digest=self._other_digest, retuned=self._retuned
+            ),
             link=self.decoder.statistics(),
             duration_s=ended - (begun if first_sample is None else first_sample),
         )
@@ -145,6 +148,9 @@ class Session:
         for frame in samples:
             if digest_of(frame) != wanted:
                 self._other_digest = digest_of(frame)
+                return True
+            if is_retuned(frame):
+                self._retuned = True
                 return True
         hidden_words = len(self.validator.spec.hidden)
         self.validator.add(trace_of(samples, AXES[self.design.axes], hidden_words=hidden_words))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.errors import DesignError
+from hostkit.errors import DesignError, RenderError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
@@ -13,9 +13,11 @@ from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
-from hostkit.sensors.part import Identity, Range, Register, RegisterWrite
+from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
+from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
 from hostkit.spec import FixedPointSpec
 from hostkit.targets import Target
 
@@ -42,6 +44,23 @@ class RangeContext:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LowPassContext:
+    """A setting of the low-pass as C99 hexadecimal texts b0, b1, b2, a1, a2, and whole ticks."""
+
+    setting: int
+    coefficients: tuple[str, ...]
+    delay_ticks: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WakePeriodContext:
+    """A rate of cycle mode: its setting and the time between two samples."""
+
+    setting: int
+    period_ms: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorContext:
     """The sensor: its map, its constants and the register writes of this design."""
 
@@ -58,11 +77,22 @@ class SensorContext:
     accel_ranges: tuple[RangeContext, ...]
     rad_s_per_count: str
     m_s2_per_count: str
+    gyro_low_passes: tuple[LowPassContext, ...]
+    accel_low_passes: tuple[LowPassContext, ...]
+    wake_periods: tuple[WakePeriodContext, ...]
     device_reset: int = mpu6050.DEVICE_RESET
     sleep: int = mpu6050.SLEEP
     clock_pll: int = mpu6050.CLOCK_PLL_GYRO_X
     signal_path_reset: int = mpu6050.SIGNAL_PATH_RESET_ALL
     data_ready: int = mpu6050.DATA_READY
+    fifo_overflow: int = mpu6050.FIFO_OVERFLOW
+    user_fifo: int = mpu6050.USER_FIFO
+    user_fifo_reset: int = mpu6050.USER_FIFO_RESET
+    fifo_temperature: int = mpu6050.FIFO_TEMPERATURE
+    fifo_gyro_x: int = mpu6050.FIFO_GYRO_X
+    fifo_accel: int = mpu6050.FIFO_ACCEL
+    fifo_all: int = mpu6050.FIFO_ALL
+    fifo_bytes: int = mpu6050.FIFO_BYTES
     self_test: int = mpu6050.SELF_TEST
     self_test_gyro_counts: str = mpu6050.SELF_TEST_GYRO_COUNTS.hex()
     self_test_gyro_growth: str = mpu6050.SELF_TEST_GYRO_GROWTH.hex()
@@ -70,6 +100,24 @@ class SensorContext:
     self_test_accel_growth: str = mpu6050.SELF_TEST_ACCEL_GROWTH.hex()
     self_test_accel_setting: int = mpu6050.SELF_TEST_ACCEL_SETTING
     self_test_accel_range: int = 2 << mpu6050.SELF_TEST_ACCEL_SETTING
+    self_test_gyro_trims: tuple[int, ...] = mpu6050.self_test_trims(
+        mpu6050.SELF_TEST_GYRO_COUNTS, mpu6050.SELF_TEST_GYRO_GROWTH
+    )
+    self_test_accel_trims: tuple[int, ...] = mpu6050.self_test_trims(
+        mpu6050.SELF_TEST_ACCEL_COUNTS, mpu6050.SELF_TEST_ACCEL_GROWTH
+    )
+    self_test_tolerance_percent: int = mpu6050.SELF_TEST_TOLERANCE_PERCENT
+    self_test_gyro_config: int = 0
+    self_test_accel_config: int = mpu6050.SELF_TEST_ACCEL_SETTING << mpu6050.FULL_SCALE_SHIFT
+    self_test_gyro_spread: int = round(
+        mpu6050.SELF_TEST_GYRO_SPREAD_DEG_S * COUNTS_PER_FULL_SCALE / 250
+    )
+    self_test_accel_spread: int = round(
+        mpu6050.SELF_TEST_ACCEL_SPREAD_G
+        * COUNTS_PER_FULL_SCALE
+        / (2 << mpu6050.SELF_TEST_ACCEL_SETTING)
+    )
+    low_pass_rate_hz: int = mpu6050.LOW_PASS_TICK_HZ
     burst_bytes: int = mpu6050.BURST_BYTES
     temperature_counts_per_deg_c: int = mpu6050.TEMPERATURE_COUNTS_PER_DEG_C
     temperature_offset_counts: int = round(
@@ -104,6 +152,7 @@ class RenderContext:
     uses_arcsin: bool
     sensor: SensorContext
     link: LinkPlan
+    options: FirmwareOptions
     target: Target
 
     def banner(self, template: str) -> str:
@@ -114,14 +163,19 @@ class RenderContext:
         )
 
 
-def render_context(design: FilterDesign, target: Target) -> RenderContext:
+def render_context(
+    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+) -> RenderContext:
     """Lower a design and lay out what templates need.
 
     Raises
     ------
     HostkitError
-        If the design cannot be lowered, or does not fit the target's sensor rate or link.
+        If the design cannot be lowered, or does not fit the target's sensor rate or link, or
+        there are options for a target that runs no firmware.
     """
+    if target.kind != "mcu" and options != DEFAULT_OPTIONS:
+        raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
     spec = FILTERS[design.filter].lower(design)
     return RenderContext(
         design=_design_context(design),
@@ -136,7 +190,8 @@ def render_context(design: FilterDesign, target: Target) -> RenderContext:
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target, hidden_words=len(spec.hidden)),
+        link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
+        options=options,
         target=target,
     )
 
@@ -170,6 +225,7 @@ def _sensor_context(design: FilterDesign) -> SensorContext:
     sensor = SENSORS[design.sensor.part]
     if sensor is not mpu6050.MPU6050:
         raise DesignError(f"there is no driver for the {sensor.title}; there is one for: mpu6050")
+    tick_s = 1.0 / mpu6050.LOW_PASS_TICK_HZ
     return SensorContext(
         title=sensor.title,
         i2c_address=sensor.i2c_address,
@@ -184,6 +240,24 @@ def _sensor_context(design: FilterDesign) -> SensorContext:
         accel_ranges=tuple(_range(r, sensor.accel_m_s2_per_count(r)) for r in sensor.accel_ranges),
         rad_s_per_count=repr(sensor.rad_s_per_count(design.sensor)),
         m_s2_per_count=repr(sensor.m_s2_per_count(design.sensor)),
+        gyro_low_passes=tuple(
+            _low_pass(lp.setting, gyro_section(lp, tick_s)) for lp in sensor.low_passes
+        ),
+        accel_low_passes=tuple(
+            _low_pass(lp.setting, accel_section(lp, tick_s)) for lp in sensor.low_passes
+        ),
+        wake_periods=tuple(
+            WakePeriodContext(setting=setting, period_ms=period)
+            for setting, period in enumerate(mpu6050.WAKE_PERIODS_MS)
+        ),
+    )
+
+
+def _low_pass(setting: int, section: LowPassSection) -> LowPassContext:
+    return LowPassContext(
+        setting=setting,
+        coefficients=tuple(c.hex() for c in (*section.numerator, *section.denominator)),
+        delay_ticks=section.delay_ticks,
     )
 
 

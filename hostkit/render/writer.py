@@ -1,34 +1,37 @@
-"""From a design to files in a folder: render, compare, write, and the manifest that names them."""
+"""From a design to files in a folder: render, compare, write."""
 
-import hashlib
-import json
-from dataclasses import dataclass, fields
-from pathlib import Path, PurePosixPath
+import re
+from dataclasses import fields
+from pathlib import Path
 
-from hostkit import __version__
-from hostkit.design_file import design_text, digest
+from hostkit.design_file import design_text
 from hostkit.dialect import c_headers
 from hostkit.errors import HostkitError, RenderError
 from hostkit.files import write_aside
 from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.context import RenderContext, render_context
 from hostkit.render.environment import environment, template_root
+from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
+from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.targets import TARGETS, Target
 
-MANIFEST = "manifest.json"
-MANIFEST_SCHEMA = "hostkit.manifest/1"
 DESIGN = "design.json"
+SKETCH = "arduino/sketch.ino.j2"
+SKETCH_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,61}[A-Za-z0-9_-]|[A-Za-z0-9_]")
+"""What the sketch specification of Arduino allows: up to 63 characters, no dot at the end."""
 
 
-def render_target(design: FilterDesign, target: Target) -> tuple[GeneratedFile, ...]:
+def render_target(
+    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+) -> tuple[GeneratedFile, ...]:
     """Render the files that come from hostkit's own templates, sorted by path.
 
     Raises
     ------
     HostkitError
-        If the design does not fit the target.
+        If the design or the options do not fit the target.
     """
-    context = render_context(design, target)
+    context = render_context(design, target, options)
     root = template_root(target.kind)
     env = environment(root)
     names = {field.name: getattr(context, field.name) for field in fields(RenderContext)}
@@ -47,14 +50,46 @@ def render_target(design: FilterDesign, target: Target) -> tuple[GeneratedFile, 
     return _sorted_unique(files)
 
 
-def generate(design: FilterDesign, target: Target) -> tuple[GeneratedFile, ...]:
-    """Return everything that `hostkit generate` writes: code, MAVLink headers, design, manifest."""
-    files = list(render_target(design, target))
+def generate(
+    design: FilterDesign,
+    target: Target,
+    options: FirmwareOptions = DEFAULT_OPTIONS,
+    *,
+    folder: Path | None = None,
+) -> tuple[GeneratedFile, ...]:
+    """Return everything that `hostkit generate` writes: code, MAVLink headers, design, manifest.
+
+    Parameters
+    ----------
+    folder
+        Where it will be written. An Arduino sketch has the name of its folder, so without one, or
+        with a name that the Arduino IDE does not allow, there is none.
+
+    Raises
+    ------
+    HostkitError
+        If the design or the options do not fit the target.
+    """
+    files = list(render_target(design, target, options))
     if target.kind == "mcu":
         files.extend(c_headers())
+    files.extend(_sketch(design, target, options, folder))
     files.append(GeneratedFile(path=DESIGN, content=design_text(design)))
-    files.append(GeneratedFile(path=MANIFEST, content=_manifest(design, target, files)))
+    files.append(
+        GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files))
+    )
     return _sorted_unique(files)
+
+
+def _sketch(
+    design: FilterDesign, target: Target, options: FirmwareOptions, folder: Path | None
+) -> tuple[GeneratedFile, ...]:
+    name = "" if folder is None else folder.resolve().name
+    if not target.arduino or not SKETCH_NAME.fullmatch(name):
+        return ()
+    banner = render_context(design, target, options).banner(SKETCH)
+    text = environment(template_root(target.kind)).get_template(SKETCH).render(banner=banner)
+    return (GeneratedFile(path=f"{name}.ino", content=_checked(text, SKETCH)),)
 
 
 def _checked(text: str, template: str) -> str:
@@ -68,58 +103,6 @@ def _sorted_unique(files: list[GeneratedFile]) -> tuple[GeneratedFile, ...]:
     if len(by_path) != len(files):
         raise RenderError("two templates make one file; the folders of a target must not overlap")
     return tuple(by_path[path] for path in sorted(by_path))
-
-
-def _sha256(content: str) -> str:
-    return hashlib.sha256(content.encode("utf-8")).hexdigest()
-
-
-def _manifest(design: FilterDesign, target: Target, files: list[GeneratedFile]) -> str:
-    document = {
-        "schema": MANIFEST_SCHEMA,
-        "hostkit": __version__,
-        "target": target.name,
-        "design": digest(design),
-        "files": {file.path: _sha256(file.content) for file in files},
-    }
-    return json.dumps(document, indent=2, sort_keys=True) + "\n"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Manifest:
-    """What a folder says of itself: target, design digest, and the hash of every file."""
-
-    target: str
-    digest: str
-    files: tuple[tuple[str, str], ...]
-
-
-def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a generated folder.
-
-    Raises
-    ------
-    RenderError
-        If there is none, or it is not one of hostkit's, or names a path outside the folder.
-    """
-    path = folder / MANIFEST
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-        files = tuple((str(name), str(value)) for name, value in document["files"].items())
-        if document["schema"] != MANIFEST_SCHEMA:
-            raise ValueError(f"schema is {document['schema']!r}")
-        target, design = str(document["target"]), str(document["design"])
-    except OSError as error:
-        raise RenderError(
-            f"{folder} holds no {MANIFEST}; it was not made by `hostkit generate`"
-        ) from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise RenderError(f"{path} is not a manifest of hostkit: {str(error)[:100]}") from error
-    for name, _ in files:
-        pure = PurePosixPath(name)
-        if pure.is_absolute() or ".." in pure.parts or not pure.parts:
-            raise RenderError(f"{path} names {name!r}, which is outside its folder")
-    return Manifest(target=target, digest=design, files=files)
 
 
 def stale_files(files: tuple[GeneratedFile, ...], folder: Path) -> tuple[str, ...]:
@@ -164,9 +147,9 @@ def _remove_leftovers(files: tuple[GeneratedFile, ...], folder: Path) -> None:
     if not (folder / MANIFEST).is_file():
         return
     wanted = {file.path for file in files}
-    for name, sha256 in read_manifest(folder).files:
+    for name, hashed in read_manifest(folder).files:
         path = folder / name
-        unchanged = path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == sha256
+        unchanged = path.is_file() and sha256(path.read_bytes()) == hashed
         if name not in wanted and unchanged:
             path.unlink()
 

@@ -40,6 +40,9 @@ SIGNAL_PATH_RESET = Register(name="SIGNAL_PATH_RESET", address=0x68)
 USER_CTRL = Register(name="USER_CTRL", address=0x6A)
 PWR_MGMT_1 = Register(name="PWR_MGMT_1", address=0x6B, reset_value=0x40)
 PWR_MGMT_2 = Register(name="PWR_MGMT_2", address=0x6C)
+FIFO_COUNT_H = Register(name="FIFO_COUNT_H", address=0x72)
+FIFO_COUNT_L = Register(name="FIFO_COUNT_L", address=0x73)
+FIFO_R_W = Register(name="FIFO_R_W", address=0x74)
 WHO_AM_I = Register(name="WHO_AM_I", address=0x75, reset_value=0x68)
 
 DEVICE_RESET = 0x80
@@ -49,9 +52,21 @@ SIGNAL_PATH_RESET_ALL = 0x07
 INT_LATCHED = 0x20
 """INT stays up until INT_STATUS is read, so that no other read can lose a sample."""
 DATA_READY = 0x01
+FIFO_OVERFLOW = 0x10
+USER_FIFO = 0x40
+USER_FIFO_RESET = 0x04
+FIFO_TEMPERATURE = 0x80
+FIFO_GYRO_X = 0x40
+FIFO_ACCEL = 0x08
+FIFO_ALL = 0xF8
+FIFO_BYTES = 1024
 SELF_TEST = 0xE0
 FULL_SCALE_SHIFT = 3
 BURST_BYTES = 14
+LOW_PASS_TICK_HZ = 8000
+"""The virtual sensor filters at the fastest rate of the part."""
+WAKE_PERIODS_MS = (800, 200, 50, 25)
+"""Cycle mode, LP_WAKE_CTRL 0 to 3: 1.25, 5, 20 and 40 Hz."""
 
 SELF_TEST_ACCEL_SETTING = 2
 SELF_TEST_GYRO_COUNTS = 25.0 * 131.0
@@ -59,6 +74,12 @@ SELF_TEST_GYRO_GROWTH = 1.046
 SELF_TEST_ACCEL_COUNTS = 4096.0 * 0.34
 SELF_TEST_ACCEL_GROWTH = (0.92 / 0.34) ** (1.0 / 30.0)
 """Factory trim of code 1, in counts of +-250 deg/s and of +-8 g, and its growth with each code."""
+
+SELF_TEST_CODES = 31
+SELF_TEST_TOLERANCE_PERCENT = 14
+SELF_TEST_GYRO_SPREAD_DEG_S = 2.0
+SELF_TEST_ACCEL_SPREAD_G = 0.05
+"""A sensor whose samples are so far from the first is not at rest: its noise is a quarter of it."""
 
 FROZEN_S = 0.5
 FROZEN_SAMPLES_MIN = 50
@@ -74,14 +95,14 @@ IDENTITIES = (
     Identity(value=0x73, part="MPU-9255", own_accel_filter=True),
     Identity(value=0x98, part="ICM-20689", own_accel_filter=True),
     Identity(value=0x72, part="unknown clone"),
-    Identity(value=0x74, part="unknown clone"),
+    Identity(value=0x74, part="MPU-6515", own_accel_filter=True),
     Identity(value=0x75, part="unknown clone"),
     Identity(value=0x12, part="ICM-20602", accepted=False),
 )
 """Parts of compatible register map that are sold as MPU-6050, by their answer to WHO_AM_I.
 
-Sources: the register map; the PX4 drivers for the parts of the same maker; for the clones reports
-of owners (Levi--G/IMU-WhoAmIVerifier 1, 2 and 3, ElectronicCats/mpu6050 21).
+Sources: the register map; the drivers of PX4 and Linux for the parts of the same maker; for the
+clones reports of owners (Levi--G/IMU-WhoAmIVerifier 1, 2 and 3, ElectronicCats/mpu6050 21).
 """
 
 MPU6050 = SensorPart(
@@ -136,6 +157,9 @@ MPU6050 = SensorPart(
         USER_CTRL,
         PWR_MGMT_1,
         PWR_MGMT_2,
+        FIFO_COUNT_H,
+        FIFO_COUNT_L,
+        FIFO_R_W,
         WHO_AM_I,
     ),
     identities=IDENTITIES,
@@ -186,6 +210,14 @@ def variant_configuration(config: SensorConfig) -> tuple[RegisterWrite, ...]:
     Its settings 1 to 6 have nearly the bandwidths of the MPU-6050's common filter.
     """
     return (RegisterWrite(register=ACCEL_CONFIG_2, value=MPU6050.low_pass(config).setting),)
+
+
+def self_test_trims(counts: float, growth: float) -> tuple[int, ...]:
+    """Return the factory trim of the self-test codes 1 to 31, in counts, rounded.
+
+    RM-MPU-6000A, section 4.1: `counts` times `growth` for each code above 1.
+    """
+    return tuple(round(counts * growth**i) for i in range(SELF_TEST_CODES))
 
 
 def frozen_samples(rate_hz: float) -> int:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from hostkit.targets.uart import UartClock
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
@@ -18,7 +20,11 @@ class Target:
     clock_hz
         Clock of the processor, or 0 where there is none to set.
     baud
-        Rate of the telemetry link, bit/s.
+        Rate of the telemetry link if no other is asked for, bit/s.
+    uart
+        How the port of that link makes a rate; None where nothing is divided.
+    arduino
+        Whether the Arduino IDE can build the code, so that it gets a sketch.
     """
 
     name: str
@@ -27,3 +33,5 @@ class Target:
     folders: tuple[str, ...]
     clock_hz: int = 0
     baud: int = 0
+    uart: UartClock | None = None
+    arduino: bool = False

@@ -127,6 +127,37 @@ def test_generate_check_build(hostkit, design: str) -> None:
     assert "hk_filter.c" in err
 
 
+def test_generate_keeps_the_options_and_states_the_budget(hostkit, design: str) -> None:
+    call = ("generate", design, "--target", "host", "--out", "fw")
+    code, out, _ = hostkit(*call, "--message", "RAW_IMU=50", "--system-id", "7")
+    assert code == 0
+    assert "RAW_IMU 50 Hz" in out.splitlines()[1]
+    assert "of 40000 bytes/s (80 % of 500000 baud)" in out.splitlines()[1]
+    assert hostkit(*call, "--check")[0] == 0
+    code, _, err = hostkit(*call, "--check", "--system-id", "8")
+    assert (code, "hk_design.h" in err) == (1, True)
+    document = json.loads(hostkit(*call, "--message", "RAW_IMU=50", "--json")[1])
+    assert document["options"]["messages_hz"] == {"RAW_IMU": 50.0}
+    assert document["link"]["bytes_per_s"] == sum(
+        m["rate_hz"] * m["frame_bytes"] for m in document["link"]["messages"]
+    )
+
+
+def test_emulate_takes_the_options_or_those_of_the_code(
+    hostkit, recording: str, design: str
+) -> None:
+    call = ("emulate", design, "--target", "host", "--recording", recording)
+    hostkit("generate", design, "--target", "host", "--out", "fw", "--message", "TILT_SAMPLE=0")
+    code, _, err = hostkit(*call, "--code", "fw", "--system-id", "7")
+    assert (code, "options that it was made with" in err) == (2, True)
+    for options in (("--code", "fw"), ("--message", "TILT_SAMPLE=0")):
+        code, _, err = hostkit(*call, *options)
+        assert (code, "TILT_SAMPLE is off" in err) == (1, True)
+    document = json.loads(hostkit(*call, "--system-id", "7", "--json")[1])
+    assert (document["mismatches"], document["beyond_tolerance"]) == (0, None)
+    assert document["tolerance_rad"] is None
+
+
 def test_edited_design_is_said_to_be_another(hostkit, recording: str, design: str) -> None:
     text = Path(design).read_text()
     eta = json.loads(text)["parameters"]["eta"]["value"]
@@ -144,6 +175,21 @@ BAD = [
     ("output into a missing folder", ("tune", "r.csv", "-o", "no/d.json"), 1, "no/d.json"),
     ("not a design", ("evaluate", "junk.csv", "r.csv"), 1, "not JSON"),
     ("unknown target", ("generate", "d.json", "--target", "z80", "--out", "x"), 2, "z80"),
+    (
+        "system id of a ground station",
+        ("generate", "d.json", "--target", "host", "--out", "x", "--system-id", "255"),
+        *(2, "ground station"),
+    ),
+    (
+        "message without a rate",
+        ("generate", "d.json", "--target", "host", "--out", "x", "--message", "RAW_IMU"),
+        *(2, "NAME=HZ"),
+    ),
+    (
+        "baud that cannot be made",
+        ("generate", "d.json", "--target", "atmega328p", "--out", "x", "--baud", "230400"),
+        *(1, "-3.5 %"),
+    ),
     ("not a generated folder", ("build", "."), 1, "manifest"),
     ("port that is not there", ("monitor", "d.json", "--port", "/dev/nope"), 4, "does not exist"),
     ("unknown command", ("frobnicate",), 2, "frobnicate"),

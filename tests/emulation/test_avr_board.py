@@ -172,6 +172,7 @@ def test_firmware_that_jumps_to_its_start_is_noticed(avr_folder: Path, tmp_path:
 def test_firmware_that_stops_is_noticed(avr_folder: Path, tmp_path: Path) -> None:
     folder = copied(avr_folder, tmp_path / "code")
     changed(folder / "hk_hal_atmega328p.c", "sei();\n    sleep_cpu();", "cli();\n    sleep_cpu();")
+    changed(folder / "hk_hal_atmega328p.c", "    hk_watchdog_start();\n", "")
     avr_board.build(folder)
     with pytest.raises(EmulationError, match=r"board\.mjs .*sleeps for ever"):
         avr_board.run(folder, stimulus(3))

@@ -118,11 +118,16 @@ def test_avr_keeps_the_promise(avr_folder: Path, promise: Promise) -> None:
     assert_kept(run(avr_folder, "atmega328p", promise.fault), promise)
 
 
-@pytest.mark.parametrize("target", ["host", "atmega328p"])
+@pytest.mark.parametrize("promise", PROMISES, ids=str)
+def test_pico_keeps_the_promise(pico_folder: Path, promise: Promise) -> None:
+    assert_kept(run(pico_folder, "rp2040", promise.fault), promise)
+
+
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040"])
 def test_a_foreign_part_is_refused_and_does_not_recover(
-    host_folder: Path, avr_folder: Path, target: str
+    host_folder: Path, avr_folder: Path, pico_folder: Path, target: str
 ) -> None:
-    folder = {"host": host_folder, "atmega328p": avr_folder}[target]
+    folder = {"host": host_folder, "atmega328p": avr_folder, "rp2040": pico_folder}[target]
     result = run(folder, target, "wrong-identity=0x12")
     assert result.fault_report is not None
     assert result.fault_report.texts == ("MPU-6050 refused: WHO_AM_I is 0x12",)
@@ -162,9 +167,9 @@ def test_a_driver_that_does_not_look_at_its_registers_is_found_out(
     """Without the check the counts of the wrong range would pass for the recording's."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
-        folder / "hk_mpu6050.c",
-        "    sensor->owed = true;\n    return registers_hold(sensor, now_us);",
-        "    sensor->owed = true;\n    (void)registers_hold;\n    return true;",
+        folder / "hk_mpu6050_burst.c",
+        "    sensor->owed = true;\n    return hk_mpu6050_registers_hold(sensor, now_us);",
+        "    sensor->owed = true;\n    return true;",
     )
     host_board.build(folder)
     result = run(folder, "host", "register-upset=0x1B10@0.5")
@@ -178,7 +183,7 @@ def test_a_gap_of_more_than_four_periods_restarts_the_filter(
     """Six announcements pass before the driver, slowed down, looks without one."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
-        folder / "hk_mpu6050.c",
+        folder / "hk_mpu6050_parts.h",
         "#define HK_OVERDUE_US  (HK_PERIOD_US + HK_PERIOD_US / 2U)",
         "#define HK_OVERDUE_US  (6U * HK_PERIOD_US)",
     )

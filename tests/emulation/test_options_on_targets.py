@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import PICO_TOOLS, changed, copied, generated, hear, require_or_skip, stimulus
+from boards import TARGET_TOOLS, changed, copied, generated, hear, require_or_skip, stimulus
 from designs import all_parameters
 
 from hostkit.emulation import avr_board, host_board
@@ -18,13 +18,6 @@ from hostkit.targets import TARGETS
 from hostkit.validation import Thresholds
 
 DESIGN = all_parameters()
-TOOLS = {
-    "host": ("gcc", "make"),
-    "atmega328p": ("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld"),
-    "rp2040": PICO_TOOLS,
-    "stm32f103": ("make", "arm-none-eabi-gcc", "gcc"),
-    "spartan3adsp": ("ghdl",),
-}
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +38,7 @@ def code(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     built: dict[str, Path] = {}
 
     def of(target: str) -> Path:
-        require_or_skip(*TOOLS[target])
-        if target == "stm32f103":
-            pytest.importorskip("unicorn")
+        require_or_skip(*TARGET_TOOLS[target])
         if target not in built:
             built[target] = generated(target, tmp_path_factory.mktemp(target), DESIGN)
             build(built[target], TARGETS[target])

@@ -24,7 +24,7 @@ from hostkit.emulation import host_board, rp2040_board, tools
 from hostkit.errors import EmulationError, ToolMissingError
 from hostkit.filters.complementary import lower, run_integer
 
-HAL, BUS, CLOCK = (f"hk_{name}_rp2040.c" for name in ("hal", "i2c", "clock"))
+HAL, BUS, CLOCK, LINK = (f"hk_{name}_rp2040.c" for name in ("hal", "i2c", "clock", "link"))
 
 
 def rebuilt(pico_folder: Path, folder: Path, file: str, old: str, new: str) -> Path:
@@ -123,14 +123,14 @@ def test_a_stuck_data_line_is_freed(
 @pytest.mark.parametrize(
     ("file", "old", "new", "reason"),
     [
-        (HAL, "HK_RESET_TIMER | HK_RESET_UART0 | HK_RESET_IO_BANK0 | HK_RESET_PADS_BANK0);\n    in",
-         "HK_RESET_TIMER | HK_RESET_IO_BANK0 | HK_RESET_PADS_BANK0);\n    in",
+        (HAL, "hk_reset_release(HK_RESET_TIMER | HK_RESET_UART0 |",
+         "hk_reset_release(HK_RESET_TIMER |",
          "uses UART0 while it is held in reset"),
         (CLOCK, "HK_REG(HK_CLK_PERI_CTRL) = HK_CLK_PERI_ENABLE;", "", "without clk_peri"),
         (BUS, "HK_REG(HK_I2C0_TAR) = address;\n    HK_REG(HK_I2C0_ENABLE) = 1U;",
          "HK_REG(HK_I2C0_ENABLE) = 1U;\n    HK_REG(HK_I2C0_TAR) = address;",
          "0x4 of I2C0 was set while it was on"),
-        (HAL, " && (HK_REG(HK_UART0_FR) & HK_UART_TX_FULL) == 0U", "", "transmitter that is full"),
+        (LINK, " && (HK_REG(HK_UART0_FR) & HK_UART_TX_FULL) == 0U", "", "transmitter that is full"),
         ("hk_boot2_rp2040.S", "COMMAND,   0x03", "COMMAND,   0xEB", "0xf4 of the SSI wrong"),
         ("hk_boot2_rp2040.S", "VECTORS,   0x10000100", "VECTORS,   0x10000104", "reset vector"),
         ("hk_image.c", "crc = UINT32_MAX", "crc = 0U", "boot ROM refuses the image"),

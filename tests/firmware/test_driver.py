@@ -96,8 +96,8 @@ def test_a_register_that_does_not_take_its_value_restarts(
     host_folder: Path, tmp_path: Path
 ) -> None:
     folder = copied(host_folder, tmp_path / "code")
-    model = folder / "hk_virtual_mpu6050.c"
-    changed(model, "    case HK_REG_FIFO_EN:\n", "")
+    model = folder / "hk_virtual_registers.c"
+    changed(model, "    case HK_REG_FIFO_EN:\n        sensor->reg", "        sensor->reg")
     changed(folder / "hk_design.h", "X(0x23, 0x00)", "X(0x23, 0x08)")
     host_board.build(folder)
     run = host_board.run(folder, stimulus(10))
@@ -112,7 +112,7 @@ def test_a_sister_part_must_keep_its_accelerometer_filter(
     host_folder: Path, tmp_path: Path, identity: int, starts: bool
 ) -> None:
     folder = copied(host_folder, tmp_path / "code")
-    model = folder / "hk_virtual_mpu6050.c"
+    model = folder / "hk_virtual_registers.c"
     changed(model, "if (own_accel_filter(sensor->faults.who_am_i)) {", "if (address == 0U) {")
     changed(
         model,
@@ -130,12 +130,11 @@ def test_a_sensor_that_falls_silent_is_reset(host_folder: Path, tmp_path: Path) 
     """The model stops once, with every register as it was set."""
     folder = copied(host_folder, tmp_path / "code")
     changed(
-        folder / "hk_virtual_mpu6050.c",
-        "    row = take_row(sensor);\n",
-        "    row = take_row(sensor);\n"
+        folder / "hk_virtual_sampling.c",
+        "    measure(sensor, row);\n",
         "    if (sensor->replay.rows_played == 20U) {\n"
         "        sensor->sample_ns = HK_NEVER;\n        sensor->replay.rows_played++;\n"
-        "        return;\n    }\n",
+        "        return;\n    }\n    measure(sensor, row);\n",
     )
     host_board.build(folder)
     heard = hear(host_board.run(folder, stimulus(60)))

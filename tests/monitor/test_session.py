@@ -54,6 +54,13 @@ def session(chunks: list[bytes], *, live: bool = True, ends: bool = False, **opt
     return Session(design=D, transport=port, thresholds=Thresholds(), clock=clock, **options)
 
 
+def test_a_device_with_other_parameters_is_refused() -> None:
+    retuned = Device(D).module.HOSTKIT_SAMPLE_RETUNED
+    report = session(Device(D).frames(SAMPLES, flags=retuned), live=False, ends=True).run().report
+    assert (report.verdict, report.digest_ok, report.checked) == ("refused", True, 0)
+    assert "other parameters" in report.reasons[0]
+
+
 def test_file_is_judged_to_its_end() -> None:
     result = session(Device(D).frames(SAMPLES), live=False, ends=True).run()
     assert (result.report.verdict, result.report.samples) == ("pass", SAMPLES)

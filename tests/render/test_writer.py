@@ -97,8 +97,8 @@ def test_the_link_budget_counts_the_hidden_state_only_where_there_is_one() -> No
     plans = [render_context(d, target).link for d in (design(), all_parameters("roll"))]
     plans.append(render_context(all_parameters(), target).link)
     assert [plan.bytes_per_s - plans[0].bytes_per_s for plan in plans] == [0, 400, 800]
-    # 100 samples of 43 + 12 bytes, 50 attitudes of 28 + 12, one heartbeat of 9 + 12.
-    assert plans[0].bytes_per_s == 100 * 55 + 50 * 40 + 21
+    # 100 samples of 43 + 12 bytes, 50 attitudes of 28 + 12, a status of 43 + 12, a heartbeat of 21.
+    assert plans[0].bytes_per_s == 100 * 55 + 50 * 40 + 55 + 21
 
 
 def test_more_hidden_state_than_a_message_carries_is_refused() -> None:
@@ -114,5 +114,5 @@ def test_the_dialect_has_the_hidden_words_that_the_link_plan_counts_on() -> None
 
 
 def test_link_that_is_too_slow_is_refused_with_the_budget() -> None:
-    with pytest.raises(RenderError, match=r"500000 baud .* about \d+ Hz fit"):
+    with pytest.raises(RenderError, match=r"500000 baud .* a design of about \d+ Hz"):
         generate(design(rate_hz=1000.0, low_pass_setting=1), TARGETS["atmega328p"])

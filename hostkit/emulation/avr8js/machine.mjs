@@ -3,11 +3,12 @@
 import avr8js from 'avr8js';
 
 import { PAINT, Segments, stackBytes } from '../js/measure.mjs';
+import { Bus } from './bus.mjs';
+import { EEPROM_BYTES, Eeprom } from './eeprom.mjs';
+import { Link } from './link.mjs';
+import { POWER_ON, WATCHDOG, resetFlags, watched, wireResets } from './resets.mjs';
 
-const {
-  AVRIOPort, AVRTWI, AVRTimer, AVRUSART, CPU, PinState,
-  avrInstruction, portCConfig, portDConfig, timer1Config, twiConfig, usart0Config,
-} = avr8js;
+const { AVRTimer, CPU, avrInstruction, timer1Config } = avr8js;
 
 const CLOCK_HZ = 16_000_000;
 const NS_PER_CYCLE = 1e9 / CLOCK_HZ;
@@ -15,6 +16,9 @@ const PATIENCE_CYCLES = CLOCK_HZ / 100;
 const FLASH_BYTES = 32768;
 const SRAM_BYTES = 2048;
 const SRAM_START = 0x100;
+const START_UP_CYCLES = 16_384 + 0.065 * CLOCK_HZ; // after every reset, with the fuses of an Uno
+const LOST = 0xa7; // what the memory holds when the supply comes back
+const REGISTERS = 32;
 
 const SLEEP = 0x9588;
 const RETI = 0x9518;
@@ -23,39 +27,65 @@ const SREG = 0x5f;
 const SREG_I = 0x80;
 const SLEEP_ENABLE = 0x01;
 const GPIOR0 = 0x3e;
-const TWEN = 0x04;
-const TWI_IDLE = 0xf8;
-const UDRIE = 0x20;
 const TIMER1_COMPARE_INTERRUPTS = 0x26;
 
-const SDA_PIN = 4;
-const SCL_PIN = 5;
-const INT_PIN = 2;
-
 export class Machine {
-  // image: flash content; onByte: called with every byte that the link sends.
+  // image: flash content; onByte: called with every byte that the link sends; nonvolatile: what the
+  // EEPROM holds.
   constructor(image, sensor, onByte, nonvolatile) {
-    const program = new Uint16Array(FLASH_BYTES / 2);
-    new Uint8Array(program.buffer).set(image);
-    this.cpu = new CPU(program, SRAM_BYTES);
-    this.cpu.data.fill(PAINT, SRAM_START, SRAM_START + SRAM_BYTES);
+    this.program = new Uint16Array(FLASH_BYTES / 2);
+    new Uint8Array(this.program.buffer).set(image);
     this.sensor = sensor;
-    this.nonvolatile = nonvolatile;
-    this.resets = 0;
     this.onByte = onByte;
+    this.nonvolatile = nonvolatile;
+    this.eeprom = nonvolatile.mount(EEPROM_BYTES);
+    this.clockHz = CLOCK_HZ;
     this.segments = new Segments();
-    this.sleeping = false;
+    this.resets = 0;
     this.sleepCycles = 0;
-    this.interruptDepth = 0;
     this.interruptCycles = 0;
-    this.linkIdleAt = 0;
+    this.deepestStack = 0;
+    this.#build(POWER_ON, 0);
+    this.#paint(PAINT);
+    this.sensorMoved();
+  }
+
+  // Make a processor with its peripherals as they are after a reset. flags: of MCUSR.
+  #build(flags, cycles) {
+    this.cpu = new CPU(this.program, SRAM_BYTES);
+    this.cpu.cycles = cycles;
+    this.resetFlags = 0; // of a reset that is to come
+    this.sleeping = false;
+    this.interruptDepth = 0;
     this.playedAt = Infinity;
-    this.#wireClock();
-    this.#wireLink();
-    this.#wirePins();
-    this.#wireBus();
-    this.#wireMarks();
     this.sensorEventAt = Infinity;
+    wireResets(this.cpu, CLOCK_HZ, flags, () => { this.resetFlags = WATCHDOG; });
+    this.#wireClock();
+    this.link = new Link(this.cpu, CLOCK_HZ, this.onByte);
+    this.bus = new Bus(this);
+    const { nonvolatile, eeprom } = this;
+    new Eeprom(this.cpu, nonvolatile, eeprom, () => { this.resetFlags = POWER_ON; });
+    this.#wireMarks();
+  }
+
+  // Start again. The watchdog leaves the memory as it is; after the supply has failed nobody knows
+  // what it holds, and the sensor starts again as well.
+  #startOver() {
+    const { data, cycles } = this.cpu;
+    const flags = this.resetFlags;
+    const powered = flags !== POWER_ON;
+    this.deepestStack = this.stackBytes;
+    this.#build(powered ? resetFlags(this.cpu) | flags : flags, cycles + START_UP_CYCLES);
+    this.cpu.data.set(data.subarray(SRAM_START), SRAM_START);
+    if (powered) {
+      this.cpu.data.set(data.subarray(0, REGISTERS));
+    } else {
+      this.#paint(LOST);
+      this.sensor.powerCycle();
+    }
+    this.resets += 1;
+    this.segments.beginning = null;
+    this.sleepCycles += START_UP_CYCLES;
     this.sensorMoved();
   }
 
@@ -70,7 +100,6 @@ export class Machine {
   // True when the table has been played and every byte is out. Firmware that polls the sensor does
   // not sleep; it is given some time to finish.
   get finished() {
-    const queued = (this.cpu.data[usart0Config.UCSRB] & UDRIE) !== 0;
     const { cycles } = this.cpu;
     if (!this.sensor.exhausted) {
       this.playedAt = Infinity;
@@ -78,7 +107,7 @@ export class Machine {
     }
     this.playedAt = Math.min(this.playedAt, cycles);
     const done = this.sleeping || cycles - this.playedAt > PATIENCE_CYCLES;
-    return done && !queued && cycles >= this.linkIdleAt;
+    return done && this.link.idle;
   }
 
   get busyShare() {
@@ -86,7 +115,16 @@ export class Machine {
   }
 
   get stackBytes() {
-    return stackBytes(this.cpu.data.subarray(SRAM_START, SRAM_START + SRAM_BYTES));
+    return Math.max(this.deepestStack, stackBytes(this.cpu.data.subarray(SRAM_START), this.paint));
+  }
+
+  #paint(value) {
+    this.paint = value;
+    this.cpu.data.fill(value, SRAM_START);
+  }
+
+  receive(byte) {
+    this.link.receive(byte);
   }
 
   // avr8js wakes the timer at every tick. Nobody sees its count between reads, which bring it up to
@@ -101,77 +139,6 @@ export class Machine {
         cycles += (0xffff - timer.debugTCNT) * timer.divider;
       }
       return add(callback, cycles);
-    };
-  }
-
-  #wireLink() {
-    const usart = new AVRUSART(this.cpu, usart0Config, CLOCK_HZ);
-    usart.onByteTransmit = (value) => {
-      this.linkIdleAt = this.cpu.cycles + usart.cyclesPerChar;
-      this.onByte(value);
-    };
-  }
-
-  #wirePins() {
-    this.portC = new AVRIOPort(this.cpu, portCConfig);
-    this.portD = new AVRIOPort(this.cpu, portDConfig);
-    this.portC.setPin(SCL_PIN, true);
-    this.portC.setPin(SDA_PIN, true);
-    let wasLow = false;
-    this.portC.addListener(() => {
-      const owned = (this.cpu.data[twiConfig.TWCR] & TWEN) !== 0; // the TWI drives the pin
-      const low = !owned && this.portC.pinState(SCL_PIN) === PinState.Low;
-      if (wasLow && !low && !owned) {
-        this.sensor.clock();
-        this.portC.setPin(SDA_PIN, !this.sensor.sdaLow);
-      }
-      wasLow = low;
-    });
-  }
-
-  #wireBus() {
-    const { cpu, sensor } = this;
-    const twi = new AVRTWI(cpu, twiConfig, CLOCK_HZ);
-    let session = 0; // a transfer that the firmware has given up comes to nothing
-    const after = (bits, action) => {
-      const begun = session;
-      sensor.advance(this.nowNs);
-      const heldNs = bits > 1 ? sensor.stretchNs : 0; // a byte; START and STOP have one bit
-      const cycles = Math.round((bits * CLOCK_HZ) / twi.sclFrequency + heldNs / NS_PER_CYCLE);
-      cpu.addClockEvent(() => {
-        if (begun !== session) {
-          return;
-        }
-        sensor.advance(this.nowNs);
-        action();
-        this.sensorMoved();
-      }, cycles);
-    };
-    twi.eventHandler = {
-      start: () => {
-        if (!sensor.sdaLow) { // with SDA low the bus looks busy and START never comes
-          after(1, () => twi.completeStart());
-        }
-      },
-      stop: () => after(1, () => {
-        sensor.stop();
-        twi.completeStop();
-      }),
-      connectToSlave: (address, write) =>
-        after(9, () => twi.completeConnect(sensor.start(address, !write))),
-      writeByte: (value) => after(9, () => twi.completeWrite(sensor.write(value))),
-      readByte: () => after(9, () => twi.completeRead(sensor.read())),
-    };
-    // Switching the peripheral off ends whatever it waits for; avr8js leaves that out.
-    const writeControl = cpu.writeHooks[twiConfig.TWCR];
-    cpu.writeHooks[twiConfig.TWCR] = (value, ...rest) => {
-      if ((value & TWEN) === 0) {
-        session += 1;
-        twi.busy = false;
-        sensor.stop();
-        cpu.data[twiConfig.TWSR] = (cpu.data[twiConfig.TWSR] & 0x07) | TWI_IDLE;
-      }
-      return writeControl(value, ...rest);
     };
   }
 
@@ -190,8 +157,7 @@ export class Machine {
   sensorMoved() {
     const { cpu, sensor } = this;
     sensor.advance(this.nowNs);
-    this.portD.setPin(INT_PIN, sensor.intPin);
-    this.portC.setPin(SDA_PIN, !sensor.sdaLow);
+    this.bus.show();
     const at = Math.ceil(sensor.nextEventNs / NS_PER_CYCLE);
     if (at === this.sensorEventAt) {
       return;
@@ -238,9 +204,9 @@ export class Machine {
     if (cpu.nextInterrupt >= 0) {
       this.#tick();
     }
-    while (this.sleeping && !this.finished) {
+    while (this.sleeping && !this.finished && this.resetFlags === 0) {
       const event = cpu.nextClockEvent;
-      if (event === null || !cpu.interruptsEnabled) {
+      if (event === null || !(cpu.interruptsEnabled || watched(cpu))) {
         throw new Error(`the firmware sleeps for ever, at word ${cpu.pc} of flash`);
       }
       this.#skipTo(Math.min(event.cycles, untilCycles));
@@ -251,18 +217,28 @@ export class Machine {
     }
   }
 
-  // Run until a time or until the machine has finished. Where an instruction sets the interrupt flag,
-  // be it SEI, RETI or OUT to SREG, the real part runs one more before any interrupt. Sleeping
-  // without a race rests on that, and so does the compiler when it moves the stack pointer.
+  // Run until a time or until the machine has finished.
   runUntil(timeS) {
-    const untilCycles = Math.floor(timeS * CLOCK_HZ);
-    const { cpu } = this;
-    const { data, progMem } = cpu;
-    while (cpu.cycles < untilCycles && !(this.sleeping && this.finished)) {
+    const untilCycles = Math.ceil(timeS * CLOCK_HZ);
+    while (this.cpu.cycles < untilCycles && !(this.sleeping && this.finished)) {
       if (this.sleeping) {
         this.#doze(untilCycles);
-        continue;
+      } else {
+        this.#run(untilCycles);
       }
+      if (this.resetFlags !== 0) {
+        this.#startOver();
+      }
+    }
+  }
+
+  // Run until the processor sleeps or is reset. Where an instruction sets the interrupt flag, be it
+  // SEI, RETI or OUT to SREG, the real part runs one more before any interrupt. Sleeping without a
+  // race rests on that, and so does the compiler when it moves the stack pointer.
+  #run(untilCycles) {
+    const { cpu } = this;
+    const { data, progMem } = cpu;
+    while (cpu.cycles < untilCycles) {
       const opcode = progMem[cpu.pc];
       const masked = (data[SREG] & SREG_I) === 0;
       avrInstruction(cpu);
@@ -273,7 +249,7 @@ export class Machine {
         this.#leaveInterrupt();
       } else if (opcode === SLEEP && (data[SMCR] & SLEEP_ENABLE) !== 0) {
         this.sleeping = true;
-        continue;
+        return;
       }
       if (masked && (data[SREG] & SREG_I) !== 0) {
         continue;
@@ -281,6 +257,9 @@ export class Machine {
       const event = cpu.nextClockEvent;
       if (cpu.nextInterrupt >= 0 || (event !== null && event.cycles <= cpu.cycles)) {
         this.#tick();
+        if (this.resetFlags !== 0) {
+          return;
+        }
       }
     }
   }

@@ -32,12 +32,12 @@ export class Segments {
 
 // Bytes of stack used so far: all above the longest run of paint that is left. The stack begins at
 // the end of the memory.
-export function stackBytes(memory) {
+export function stackBytes(memory, paint = PAINT) {
   let longest = 0;
   let end = memory.length;
   let intact = 0;
   for (let i = 0; i < memory.length; i++) {
-    intact = memory[i] === PAINT ? intact + 1 : 0;
+    intact = memory[i] === paint ? intact + 1 : 0;
     if (intact > longest) {
       longest = intact;
       end = i + 1;

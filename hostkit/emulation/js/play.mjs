@@ -28,6 +28,7 @@ import { NonVolatile } from './nonvolatile.mjs';
 import { VirtualSensor } from './virtual_sensor.mjs';
 
 const STALL_S = 5;
+const CLOCK_STEP_S = 1e-7; // no machine stops closer to a time than its clock allows
 const SLICE_S = 0.1;
 const UNARMED_SLICE_S = 0.001;
 const FAULT_SLICE_S = 0.01;
@@ -124,7 +125,7 @@ class Script {
   }
 
   play(machine) {
-    while (machine.timeS >= this.nextS) {
+    while (machine.timeS + CLOCK_STEP_S >= this.nextS) {
       this.pieces.shift().bytes.forEach((byte) => machine.receive(byte));
     }
   }

@@ -3,6 +3,9 @@
 import { readFileSync } from 'node:fs';
 
 const PAGE_BYTES = 65536;
+const ADDRESS = 0x68;
+const PWR_MGMT_1 = 0x6b;
+const DEVICE_RESET = 0x80;
 const NEVER = 0xffffffffffffffffn;
 
 export class VirtualSensor {
@@ -51,6 +54,26 @@ export class VirtualSensor {
     if (this.c.hk_virtual_mpu6050_plan(this.sensor, kind, row, amount) === 0) {
       throw new Error(`fault ${kind} cannot be planned: no such kind, or too many`);
     }
+  }
+
+  // Its supply has failed and comes back: what it did on the bus ends, and it resets.
+  powerCycle() {
+    this.stop();
+    this.nackNext(0);
+    this.holdSda(0);
+    this.start(ADDRESS, false);
+    this.write(PWR_MGMT_1);
+    this.write(DEVICE_RESET);
+    this.stop();
+  }
+
+  // Take the rows for motion that is sampled and filtered, one every period.
+  feelMotion(rowPeriodNs) {
+    this.c.hk_virtual_mpu6050_feel_motion(this.sensor, BigInt(rowPeriodNs));
+  }
+
+  setAd0(high) {
+    this.c.hk_virtual_mpu6050_set_ad0(this.sensor, high ? 1 : 0);
   }
 
   get struck() {

@@ -1,6 +1,7 @@
-// The transmitter of a PL011 with its FIFO, its timing, and an interrupt that comes when the FIFO has
-// run down to a level, not while it is below. The UART of rp2040js sends in no time and always asks
-// for more.
+// A PL011 with its FIFOs and its timing. It interrupts when the FIFO of the transmitter has run down
+// to a level, not while it is below; when that of the receiver has come up to one; and when a byte
+// has waited there for 32 bits without another. The UART of rp2040js sends in no time and always
+// asks for more.
 
 import { BasePeripheral } from 'rp2040js';
 
@@ -19,13 +20,23 @@ const ICR = 0x44;
 const BUSY = 1 << 3;
 const RX_EMPTY = 1 << 4;
 const TX_FULL = 1 << 5;
+const RX_FULL = 1 << 6;
 const TX_EMPTY = 1 << 7;
+const RX_INTERRUPT = 1 << 4;
 const TX_INTERRUPT = 1 << 5;
+const SILENCE_INTERRUPT = 1 << 6;
 const FIFOS = 1 << 4;
-const ON = (1 << 8) | (1 << 0);
+const TX_ON = (1 << 8) | (1 << 0);
+const RX_ON = (1 << 9) | (1 << 0);
+const OVERRUN = 1 << 11;
 const LEVELS = [4, 8, 16, 24, 28];
 const FIFO_BYTES = 32;
+const SILENCE_BITS = 32;
+const NOMINAL_HZ = 115200; // of a wire into a UART that is not set up
 const IRQ = 20;
+
+const RX_PIN = 1;
+const FUNCTION_UART = 2;
 
 export class Uart extends BasePeripheral {
   // onByte: called with every byte when it has left.
@@ -39,6 +50,9 @@ export class Uart extends BasePeripheral {
     this.queue = [];
     this.leaving = null;
     this.alarm = chip.clock.createAlarm(() => this.#left());
+    this.received = [];
+    this.overrun = 0;
+    this.silence = chip.clock.createAlarm(() => this.#raise(SILENCE_INTERRUPT));
   }
 
   // True when every byte is out and nobody waits to send more.
@@ -49,26 +63,36 @@ export class Uart extends BasePeripheral {
   // End whatever goes on, for a reset.
   drop() {
     this.alarm.cancel();
+    this.silence.cancel();
     this.rp2040.setInterrupt(IRQ, false);
   }
 
+  // How long a byte takes on the wire.
+  get byteNs() {
+    const bits = 5 + ((this.registers.get(LCR_H) >> 5) & 0x3) + 2;
+    const hz = this.#baud;
+    return hz > 0 && hz < Infinity ? (bits * 1e9) / hz : (10 * 1e9) / NOMINAL_HZ;
+  }
+
+  get #baud() {
+    const divisor = this.registers.get(IBRD) + this.registers.get(FBRD) / 64;
+    return this.rp2040.clocks.periFreq / (16 * divisor);
+  }
+
+  get #depth() {
+    return (this.registers.get(LCR_H) & FIFOS) !== 0 ? FIFO_BYTES : 1;
+  }
+
   get #room() {
-    return ((this.registers.get(LCR_H) & FIFOS) !== 0 ? FIFO_BYTES : 1) - this.queue.length;
+    return this.#depth - this.queue.length;
   }
 
   get #level() {
-    const fifos = (this.registers.get(LCR_H) & FIFOS) !== 0;
-    return fifos ? LEVELS[this.registers.get(IFLS) & 0x7] : 0;
+    return this.#depth > 1 ? LEVELS[this.registers.get(IFLS) & 0x7] : 0;
   }
 
-  get #byteNs() {
-    const divisor = this.registers.get(IBRD) + this.registers.get(FBRD) / 64;
-    const hz = this.rp2040.clocks.periFreq / (16 * divisor);
-    if (!(hz > 0 && hz < Infinity)) {
-      throw new Error('the firmware sends without clk_peri or without a baud rate');
-    }
-    const bits = 5 + ((this.registers.get(LCR_H) >> 5) & 0x3) + 2;
-    return (bits * 1e9) / hz;
+  get #receiveLevel() {
+    return this.#depth > 1 ? LEVELS[(this.registers.get(IFLS) >> 3) & 0x7] : 1;
   }
 
   #interrupt() {
@@ -77,14 +101,18 @@ export class Uart extends BasePeripheral {
 
   // Begin with the next byte if there is one.
   #send() {
-    if (this.leaving !== null || this.queue.length === 0 || (this.registers.get(CR) & ON) !== ON) {
+    if (this.leaving !== null || this.queue.length === 0 ||
+        (this.registers.get(CR) & TX_ON) !== TX_ON) {
       return;
+    }
+    if (!(this.#baud > 0 && this.#baud < Infinity)) {
+      throw new Error('the firmware sends without clk_peri or without a baud rate');
     }
     this.leaving = this.queue.shift();
     if (this.queue.length === this.#level) {
       this.raw |= TX_INTERRUPT;
     }
-    this.alarm.schedule(this.#byteNs);
+    this.alarm.schedule(this.byteNs);
     this.#interrupt();
   }
 
@@ -95,7 +123,7 @@ export class Uart extends BasePeripheral {
     this.#send();
   }
 
-  #take(byte) {
+  #put(byte) {
     if (this.#room <= 0) {
       throw new Error('the firmware writes to a transmitter that is full');
     }
@@ -106,11 +134,64 @@ export class Uart extends BasePeripheral {
     this.#send();
   }
 
+  #raise(interrupt) {
+    this.raw |= interrupt;
+    this.#interrupt();
+  }
+
+  get #listening() {
+    const { functionSelect, inputEnable } = this.rp2040.gpio[RX_PIN];
+    const on = (this.registers.get(CR) & RX_ON) === RX_ON;
+    return on && functionSelect === FUNCTION_UART && inputEnable;
+  }
+
+  // Take a byte from the wire. It is lost where nobody listens, and where the FIFO is full.
+  take(byte) {
+    if (!this.#listening) {
+      return;
+    }
+    if (this.received.length >= this.#depth) {
+      this.overrun = OVERRUN;
+      return;
+    }
+    this.received.push(byte | this.overrun);
+    this.overrun = 0;
+    if (this.received.length === this.#receiveLevel) {
+      this.#raise(RX_INTERRUPT);
+    }
+    this.silence.schedule((this.byteNs * SILENCE_BITS) / 10);
+  }
+
+  #get() {
+    const found = this.received.shift();
+    if (found === undefined) {
+      throw new Error('the firmware reads a receiver that is empty');
+    }
+    if (this.received.length < this.#receiveLevel) {
+      this.raw &= ~RX_INTERRUPT;
+    }
+    if (this.received.length === 0) {
+      this.raw &= ~SILENCE_INTERRUPT;
+      this.silence.cancel();
+    }
+    this.#interrupt();
+    return found;
+  }
+
+  get #flags() {
+    return (this.leaving === null ? 0 : BUSY) |
+      (this.received.length > 0 ? 0 : RX_EMPTY) |
+      (this.#room > 0 ? 0 : TX_FULL) |
+      (this.received.length < this.#depth ? 0 : RX_FULL) |
+      (this.queue.length > 0 ? 0 : TX_EMPTY);
+  }
+
   readUint32(offset) {
     switch (offset) {
+      case DR:
+        return this.#get();
       case FR:
-        return RX_EMPTY | (this.leaving === null ? 0 : BUSY) | (this.#room > 0 ? 0 : TX_FULL) |
-          (this.queue.length > 0 ? 0 : TX_EMPTY);
+        return this.#flags;
       case RIS:
         return this.raw;
       case MIS:
@@ -121,7 +202,7 @@ export class Uart extends BasePeripheral {
 
   writeUint32(offset, value) {
     if (offset === DR) {
-      this.#take(value);
+      this.#put(value);
     } else if (offset === ICR) {
       this.raw &= ~value;
     } else if (this.registers.has(offset)) {

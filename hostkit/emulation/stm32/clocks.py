@@ -1,11 +1,13 @@
-"""Reset and clock control, and the flash's access control."""
+"""Reset and clock control."""
 
 from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, Timeline
 from hostkit.errors import EmulationError
 
-CR, CFGR, APB2ENR, APB1ENR = 0x00, 0x04, 0x18, 0x1C
-HSI_READY, HSE_ON, HSE_READY, PLL_ON, PLL_READY = 1 << 1, 1 << 16, 1 << 17, 1 << 24, 1 << 25
+CR, CFGR, APB2ENR, APB1ENR, CSR = 0x00, 0x04, 0x18, 0x1C, 0x24
+HSI_ON, HSE_ON, HSE_READY, PLL_ON, PLL_READY = 1, 1 << 16, 1 << 17, 1 << 24, 1 << 25
 CR_AFTER_RESET = 0x83
+REMOVE_FLAGS = 1 << 24
+BY_PIN, BY_POWER, BY_REQUEST, BY_WATCHDOG = 1 << 26, 1 << 27, 1 << 28, 1 << 29
 CR_SETTABLE = 0xF9 | HSE_ON | PLL_ON
 CRYSTAL_HZ = 8_000_000
 INTERNAL_HZ = 8_000_000
@@ -17,18 +19,21 @@ SW_INTERNAL, SW_CRYSTAL, SW_PLL = 0, 1, 2
 
 
 class Clocks:
-    """RCC and FLASH: the clock of the core, of both buses, and which peripherals have one.
+    """RCC: the clock of the core and of both buses, which peripherals have one, why it started.
 
     Attributes
     ----------
     crystal_starts
         Whether the crystal oscillates.
+    reset_flags
+        What the resets so far have left in RCC_CSR.
     hclk_hz, pclk1_hz, pclk2_hz
         Clock of the core and of the buses.
     """
 
-    def __init__(self, time: Timeline, *, crystal_starts: bool = True) -> None:
+    def __init__(self, time: Timeline, *, crystal_starts: bool, reset_flags: int) -> None:
         self._time = time
+        self.reset_flags = reset_flags
         self.crystal_starts = crystal_starts
         self.due = NEVER
         self._cr = CR_AFTER_RESET
@@ -49,6 +54,11 @@ class Clocks:
         return bool(self._enabled[register] >> bit & 1)
 
     @property
+    def internal_is_on(self) -> bool:
+        """Whether the internal oscillator runs, which the flash is programmed with."""
+        return bool(self._cr & HSI_ON)
+
+    @property
     def timer1_hz(self) -> int:
         """Clock of the timers of APB1: its own, or twice that where it is divided."""
         return self.pclk1_hz if self.pclk1_hz == self.hclk_hz else 2 * self.pclk1_hz
@@ -59,6 +69,8 @@ class Clocks:
             return self._cr
         if offset == CFGR:
             return self._cfgr | (self._cfgr & 3) << 2  # the switch is done at once
+        if offset == CSR:
+            return self.reset_flags
         if offset in self._enabled:
             return self._enabled[offset]
         raise EmulationError(f"RCC has no register at {offset:#x} in the model")
@@ -71,6 +83,8 @@ class Clocks:
         elif offset == CFGR:
             self._cfgr = value & ~0xC
             self._derive()
+        elif offset == CSR:
+            self.reset_flags = 0 if value & REMOVE_FLAGS else self.reset_flags
         elif offset in self._enabled:
             self._enabled[offset] = value
         else:
@@ -124,22 +138,3 @@ class Clocks:
 def _divisor(field: int, divides_from: int) -> int:
     """Return what a prescaler's field stands for: 1 below `divides_from`, then 2, 4, 8, ..."""
     return 1 if field < divides_from else 2 << field - divides_from
-
-
-class FlashControl:
-    """The flash's access control register."""
-
-    def __init__(self, clocks: Clocks) -> None:
-        self._clocks = clocks
-        self._acr = 0x30
-
-    def read(self, offset: int) -> int:
-        """Return the register."""
-        return self._acr if offset == 0 else 0
-
-    def write(self, offset: int, value: int) -> None:
-        """Write the register; the others are for programming, which is not modelled."""
-        if offset != 0:
-            raise EmulationError("the firmware programs its flash, which is not modelled")
-        self._acr = value & 0x3F
-        self._clocks.set_wait_states(value)

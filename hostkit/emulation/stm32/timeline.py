@@ -1,8 +1,10 @@
-"""Simulated time: what has passed, what an instruction takes, and what a peripheral is."""
+"""Simulated time, and what a peripheral is."""
 
+import ctypes
 from typing import Protocol
 
 from hostkit.emulation.virtual_sensor import NEVER as NEVER_NS
+from hostkit.errors import EmulationError
 
 TICK_HZ = 72_000_000
 """Time is counted in periods of the fastest clock."""
@@ -11,20 +13,35 @@ NEVER = 2**63
 """Tick of an event that does not come."""
 
 
-class Timeline:
-    """The time, which the machine moves and the peripherals read.
+class Timeline(ctypes.Structure):
+    """The time, which the inner loop moves and the peripherals read; all in ticks.
 
     Attributes
     ----------
     now
-        Ticks since the start.
+        Time since the start.
     ticks_per_instruction
         What an instruction takes: one clock of the core.
+    until
+        How far to run.
+    wake
+        When something may happen.
+    stalled_until
+        No instruction can be fetched before.
     """
 
-    def __init__(self) -> None:
-        self.now = 0
-        self.ticks_per_instruction = 1
+    now: int
+    ticks_per_instruction: int
+    until: int
+    wake: int
+    stalled_until: int
+    _fields_ = [  # noqa: RUF012
+        ("now", ctypes.c_uint64),
+        ("ticks_per_instruction", ctypes.c_uint64),
+        ("until", ctypes.c_uint64),
+        ("wake", ctypes.c_uint64),
+        ("stalled_until", ctypes.c_uint64),
+    ]
 
     @property
     def now_ns(self) -> int:
@@ -35,6 +52,10 @@ class Timeline:
     def now_s(self) -> float:
         """Seconds since the start."""
         return self.now / TICK_HZ
+
+
+class BusFault(EmulationError):
+    """An access that the bus refuses; the core takes it for a fault of the program."""
 
 
 def tick_at(time_ns: int) -> int:

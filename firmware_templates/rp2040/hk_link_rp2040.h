@@ -1,0 +1,8 @@
+/* The link of an RP2040: UART0 on GP0 and GP1. */
+#ifndef HK_LINK_RP2040_H
+#define HK_LINK_RP2040_H
+
+/* Set the UART up; it must have been let out of reset. */
+void hk_uart_init(void);
+
+#endif

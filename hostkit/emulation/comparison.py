@@ -1,0 +1,216 @@
+"""Holding what a target answered to a recording against the models."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.attitude import wrap_rad
+from hostkit.emulation.board import BoardRun
+from hostkit.emulation.fault import Fault
+from hostkit.emulation.fault_report import (
+    FaultReport,
+    answers_of_models,
+    is_active,
+    last_errors,
+    repeats,
+    rows_of,
+    said,
+)
+from hostkit.filters import FILTERS
+from hostkit.link.decoder import Frame
+from hostkit.records import AXES, AngleTrace, FilterDesign, read_only
+from hostkit.sensors import SENSORS
+from hostkit.sensors.counts import Counts, to_rate_and_force_g
+from hostkit.targets import Target
+from hostkit.units import RAD_PER_HALF_TURN_LSB
+
+Vector = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+FLOAT_TOLERANCE_RAD = 1e-5
+"""How far a filter in float may be from the model, which computes in double; 0.0006 deg."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmulationResult:
+    """What a target answered to a recording.
+
+    Attributes
+    ----------
+    samples, missing
+        Samples that came back, and samples that were to come and did not.
+    mismatches
+        Samples whose raw counts differ, or whose state: from the integer model in any bit, or,
+        with a tolerance, from the float model by more.
+    residual_rad
+        Device minus float model, shape ``(samples, A)``.
+    cycles_mean, cycles_max
+        Cost of a filter update; None where nothing counts it.
+    stack_bytes
+        Deepest stack; None where nothing measures it.
+    faults
+        What went wrong on the board, by name.
+    fault_report
+        What became of the faults that were asked for; None if none were.
+    cost_unit
+        What the cost is counted in: clock ``cycles``, or ``instructions`` where the emulator
+        knows no cycles.
+    tolerance_rad
+        How far a filter that computes in float may be from the float model; None for one that
+        computes in integers, whose every bit must be the integer model's.
+    """
+
+    target: str
+    samples: int
+    missing: int
+    mismatches: int
+    residual_rad: Vector
+    cycles_mean: float | None
+    cycles_max: float | None
+    stack_bytes: int | None
+    faults: tuple[tuple[str, int], ...]
+    fault_report: FaultReport | None = None
+    cost_unit: str = "cycles"
+    tolerance_rad: float | None = None
+
+    def __post_init__(self) -> None:
+        """Make the array read-only."""
+        read_only(self.residual_rad)
+
+    @property
+    def max_abs_error_rad(self) -> float | None:
+        """Largest residual, or None if nothing came back."""
+        return float(np.abs(self.residual_rad).max()) if self.residual_rad.size else None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every sample came back as the model says.
+
+        A run with faults may lose samples, but must recover, and what it sends must be right.
+        """
+        if self.fault_report is not None:
+            return self.fault_report.recovered and self.mismatches == 0
+        return self.samples > 0 and self.missing == 0 and self.mismatches == 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answer:
+    """Rows of the recording that came back, with counts and states.
+
+    Attributes
+    ----------
+    row
+        Which row of the recording each is, shape ``(N,)``.
+    every
+        Only every so many-th row was to come, from the first on.
+    tolerance_rad
+        As in :class:`EmulationResult`.
+    """
+
+    row: IntArray
+    counts: Counts
+    state_raw: IntArray
+    cycles_mean: float | None
+    cycles_max: float | None
+    stack_bytes: int | None = None
+    faults: tuple[tuple[str, int], ...] = ()
+    cost_unit: str = "cycles"
+    every: int = 1
+    tolerance_rad: float | None = None
+
+
+def compare(
+    target: Target, design: FilterDesign, counts: Counts, answer: Answer
+) -> EmulationResult:
+    """Hold an answer against the models, which run through the whole recording once.
+
+    Parameters
+    ----------
+    counts
+        What the sensor gives for the recording.
+    """
+    filter_, part = FILTERS[design.filter], SENSORS[design.sensor.part]
+    wanted = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
+    axes = len(AXES[design.axes])
+    exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))[:, :axes]
+    inside = (answer.row >= 0) & (answer.row < len(counts))
+    row = np.where(inside, answer.row, 0)
+    residual = _residual_rad(answer.state_raw, exact[row])
+    wrong = (
+        ~inside
+        | _state_wrong(answer.state_raw, wanted[row], residual, answer.tolerance_rad)
+        | (answer.counts.accel != counts.accel[row]).any(axis=1)
+        | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
+    )
+    expected = np.arange(0, len(counts), answer.every)
+    return EmulationResult(
+        target=target.name,
+        samples=len(answer.row),
+        missing=len(np.setdiff1d(expected, answer.row)),
+        mismatches=int(wrong.sum()),
+        residual_rad=residual,
+        cycles_mean=answer.cycles_mean,
+        cycles_max=answer.cycles_max,
+        stack_bytes=answer.stack_bytes,
+        faults=answer.faults,
+        cost_unit=answer.cost_unit,
+        tolerance_rad=answer.tolerance_rad,
+    )
+
+
+def compare_with_faults(
+    target: Target,
+    design: FilterDesign,
+    counts: Counts,
+    run: BoardRun,
+    heard: tuple[list[Frame], AngleTrace],
+    faults: tuple[Fault, ...],
+    tolerance_rad: float | None,
+) -> EmulationResult:
+    """Hold what came back against the models, run anew from every restart that the device tells."""
+    frames, trace = heard
+    sent = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
+    elapsed = np.diff(trace.time_us, prepend=0) * 1e-6 * design.rate_hz
+    row = rows_of(sent, counts, np.ceil(elapsed).astype(np.int64))
+    repeated = repeats(sent) & (row < 0)
+    wanted, exact = answers_of_models(design, sent, trace.restarted)
+    residual = _residual_rad(trace.state_raw, exact)
+    wrong = _state_wrong(trace.state_raw, wanted, residual, tolerance_rad)
+    wrong |= (row < 0) & ~repeated
+    return EmulationResult(
+        target=target.name,
+        samples=len(trace),
+        missing=len(counts) - int((row >= 0).sum()),
+        mismatches=int(wrong.sum()),
+        residual_rad=residual,
+        cycles_mean=run.cycles_mean,
+        cycles_max=run.cycles_max,
+        stack_bytes=run.stack_bytes,
+        faults=run.faults,
+        cost_unit=run.cost_unit,
+        tolerance_rad=tolerance_rad,
+        fault_report=FaultReport(
+            injected=tuple(str(fault) for fault in faults),
+            struck=dict(run.faults).get("struck", 0),
+            errors=last_errors(frames),
+            restarts=max(int(trace.restarted.sum()) - 1, 0),
+            texts=said(frames),
+            repeated=int(repeated.sum()),
+            recovered=bool(len(row) and row[-1] == len(counts) - 1 and is_active(frames)),
+        ),
+    )
+
+
+def _residual_rad(state_raw: IntArray, exact: Vector) -> Vector:
+    axes = exact.shape[1]
+    return wrap_rad(state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact)
+
+
+def _state_wrong(
+    state_raw: IntArray, wanted: IntArray, residual_rad: Vector, tolerance_rad: float | None
+) -> BoolArray:
+    """Tell which states are not the model's: in any bit, or by more than the tolerance."""
+    differ = state_raw != wanted if tolerance_rad is None else np.abs(residual_rad) > tolerance_rad
+    return np.asarray(differ.any(axis=1))

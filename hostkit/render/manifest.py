@@ -1,0 +1,112 @@
+"""The manifest of a generated folder: target, design, options and the hash of every file."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from hostkit import __version__
+from hostkit.design_file import digest
+from hostkit.errors import RenderError
+from hostkit.records import FilterDesign, GeneratedFile
+from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions, MessageRate
+from hostkit.targets import Target
+
+MANIFEST = "manifest.json"
+MANIFEST_SCHEMA = "hostkit.manifest/1"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manifest:
+    """What a folder says of itself: target, design digest, options, and the hash of every file."""
+
+    target: str
+    digest: str
+    files: tuple[tuple[str, str], ...]
+    options: FirmwareOptions = DEFAULT_OPTIONS
+
+
+def manifest_text(
+    design: FilterDesign, target: Target, options: FirmwareOptions, files: list[GeneratedFile]
+) -> str:
+    """Return the manifest of rendered files; only firmware has options."""
+    document = {
+        "schema": MANIFEST_SCHEMA,
+        "hostkit": __version__,
+        "target": target.name,
+        "design": digest(design),
+        "files": {file.path: sha256(file.content.encode("utf-8")) for file in files},
+    }
+    if target.kind == "mcu":
+        document["options"] = options_document(options)
+    return json.dumps(document, indent=2, sort_keys=True) + "\n"
+
+
+def options_document(options: FirmwareOptions) -> dict[str, object]:
+    """Return options as they stand in a manifest and in ``generate --json``."""
+    return {
+        "profile": options.profile,
+        "system_id": options.system_id,
+        "baud": options.baud,
+        "messages_hz": {rate.name: rate.rate_hz for rate in options.message_rates},
+        "arithmetic": options.arithmetic,
+        "acquisition": options.acquisition,
+        "calibrate_at_start": options.calibrate_at_start,
+        "signing": options.signing,
+    }
+
+
+def sha256(content: bytes) -> str:
+    """Return the hash by which a manifest knows a file."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read the manifest of a generated folder; one without options has the defaults.
+
+    Raises
+    ------
+    RenderError
+        If there is none, or it is not one of hostkit's, or names a path outside the folder.
+    """
+    path = folder / MANIFEST
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+        files = tuple((str(name), str(value)) for name, value in document["files"].items())
+        if document["schema"] != MANIFEST_SCHEMA:
+            raise ValueError(f"schema is {document['schema']!r}")
+        target, design = str(document["target"]), str(document["design"])
+        options = _options(document["options"]) if "options" in document else DEFAULT_OPTIONS
+    except OSError as error:
+        raise RenderError(
+            f"{folder} holds no {MANIFEST}; it was not made by `hostkit generate`"
+        ) from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise RenderError(f"{path} is not a manifest of hostkit: {str(error)[:100]}") from error
+    for name, _ in files:
+        _require_inside(path, name)
+    return Manifest(target=target, digest=design, files=files, options=options)
+
+
+def _require_inside(path: Path, name: str) -> None:
+    pure = PurePosixPath(name)
+    if pure.is_absolute() or ".." in pure.parts or not pure.parts:
+        raise RenderError(f"{path} names {name!r}, which is outside its folder")
+
+
+def _options(document: Any) -> FirmwareOptions:
+    rates = tuple(
+        MessageRate(name=str(name), rate_hz=float(hz))
+        for name, hz in document["messages_hz"].items()
+    )
+    return FirmwareOptions(
+        profile=document["profile"],
+        system_id=int(document["system_id"]),
+        baud=None if document["baud"] is None else int(document["baud"]),
+        message_rates=rates,
+        arithmetic=document["arithmetic"],
+        acquisition=document["acquisition"],
+        calibrate_at_start=bool(document["calibrate_at_start"]),
+        signing=bool(document["signing"]),
+    )

@@ -1,0 +1,162 @@
+"""MAVProxy, as its users run it, talks to the emulated ATmega328P over a pseudo-terminal."""
+
+import contextlib
+import importlib.util
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from boards import require_or_skip
+from designs import design
+
+from hostkit.design_file import save_design
+from hostkit.link.decoder import Decoder
+from hostkit.link.tlog import read_tlog
+from hostkit.recordings import save
+from hostkit.simulation import SensorErrors, simulate
+
+DESIGN = design(accel_full_scale_g=4)
+TURN_ON_RATE_RAD_S = 0.05
+PATIENCE_S = 60.0
+MODULES = "link,param,cmdlong,calibration,misc"
+
+
+class GroundStation:
+    """A running MAVProxy: what is typed, and what it prints."""
+
+    def __init__(self, port: str, folder: Path) -> None:
+        self.folder = folder
+        command = [sys.executable, "-m", "MAVProxy.mavproxy", f"--master={port}"]
+        command += ["--baudrate=500000", f"--default-modules={MODULES}"]
+        command += [f"--state-basedir={folder}", f"--logfile={folder / 'link.tlog'}"]
+        self._child = subprocess.Popen(
+            command,
+            cwd=folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
+        self.printed = ""
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._child.stdout is not None
+        while piece := self._child.stdout.read(1):
+            self.printed += piece
+
+    def type(self, line: str) -> None:
+        assert self._child.stdin is not None
+        self._child.stdin.write(line + "\n")
+        self._child.stdin.flush()
+
+    def see(self, pattern: str, *, asking: str | None = None) -> re.Match[str]:
+        """Wait until it prints a text, typing a command every other second meanwhile."""
+        start, deadline = len(self.printed), time.monotonic() + PATIENCE_S
+        if asking is None:
+            start = 0
+        while time.monotonic() < deadline:
+            if asking is not None:
+                self.type(asking)
+            again = time.monotonic() + 2.0
+            while time.monotonic() < again:
+                if found := re.search(pattern, self.printed[start:]):
+                    return found
+                time.sleep(0.05)
+        pytest.fail(f"MAVProxy did not print {pattern!r}; it printed: {self.printed[-3000:]}")
+
+    def close(self) -> None:
+        with contextlib.suppress(BrokenPipeError):
+            self.type("exit")
+        try:
+            self._child.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self._child.kill()
+            self._child.wait()
+        self._reader.join(5.0)
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A still sensor, whose gyroscope has an offset, on an emulated AVR."""
+    require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
+    if importlib.util.find_spec("MAVProxy") is None:
+        pytest.skip("MAVProxy is not installed: pip install --no-deps MAVProxy")
+    folder = tmp_path_factory.mktemp("mavproxy")
+    recording = simulate(
+        "rest",
+        duration_s=20.0,
+        rate_hz=DESIGN.rate_hz,
+        sensor=DESIGN.sensor,
+        errors=SensorErrors(gyro_bias_rad_s=(TURN_ON_RATE_RAD_S,) * 3),
+        rng=np.random.default_rng(1),
+    )
+    save(recording, folder / "rest.csv")
+    save_design(DESIGN, folder / "design.json")
+    command = [sys.executable, "-m", "hostkit", "emulate", str(folder / "design.json"), "--pty"]
+    command += ["--target", "atmega328p", "--recording", str(folder / "rest.csv")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
+        try:
+            assert p.stdout is not None
+            path = p.stdout.readline().strip()
+            assert path, p.stderr and p.stderr.read()
+            yield path
+        finally:
+            p.send_signal(signal.SIGINT)
+            p.communicate(timeout=30)
+
+
+@pytest.fixture(scope="module")
+def station(port: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[GroundStation]:
+    station = GroundStation(port, tmp_path_factory.mktemp("station"))
+    try:
+        yield station
+    finally:
+        station.close()
+
+
+def test_heartbeat_puts_it_on_line(station: GroundStation) -> None:
+    station.see(r"online system 1")
+
+
+def test_attitude_is_shown(station: GroundStation) -> None:
+    shown = station.see(r"ATTITUDE \{.*roll : (-?[\d.e-]+)", asking="status ATTITUDE")
+    assert abs(float(shown.group(1))) < 0.2
+
+
+def test_parameters_are_listed(station: GroundStation) -> None:
+    station.see(r"FILT_TAU +([\d.]+)", asking="param show FILT_TAU")
+    station.see(r"Received \d+ parameters")
+
+
+def test_a_parameter_is_set_and_shown(station: GroundStation) -> None:
+    station.type("param set FILT_TAU 1.5")
+    station.see(r"FILT_TAU +1\.50?0", asking="param show FILT_TAU")
+
+
+def test_the_gyroscope_is_calibrated(station: GroundStation) -> None:
+    station.type("gyrocal")
+    station.see(r"COMMAND_ACK: PREFLIGHT_CALIBRATION: ACCEPTED")
+    shown = station.see(r"GYRO_BIAS_ROLL +(-?[\d.]+)", asking="param show GYRO_BIAS_ROLL")
+    assert abs(float(shown.group(1)) - TURN_ON_RATE_RAD_S) < 0.005
+
+
+def test_a_message_interval_is_set(station: GroundStation) -> None:
+    station.type("long SET_MESSAGE_INTERVAL 30 100000")
+    station.see(r"COMMAND_ACK: SET_MESSAGE_INTERVAL: ACCEPTED")
+    time.sleep(3.0)
+    station.close()
+    decoder = Decoder()
+    raw = read_tlog(station.folder / "link.tlog")
+    frames = [frame for piece in raw for frame in decoder.feed(piece)]
+    attitude = [frame.message.time_boot_ms for frame in frames if frame.name == "ATTITUDE"]
+    assert np.median(np.diff(attitude[-15:])) == pytest.approx(100, abs=11)

@@ -1,0 +1,109 @@
+"""Cppcheck, with its MISRA add-on, over the C of every target.
+
+The gate is a chosen part of MISRA C:2012, not all of it: the firmware does not claim MISRA.
+"""
+
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from boards import changed, generated, program_or_skip
+from designs import all_parameters, design
+
+from hostkit.records import FilterDesign
+
+LEFT_OUT = {
+    "2.2": "cppcheck takes a factor of -1 or 1 for an operation without effect",
+    "2.3": "type names of assertions at compile time are not used again",
+    "2.5": "a header of registers lists more than one design uses",
+    "2.7": "cppcheck does not look into assembly; -Wunused-parameter does",
+    "5.9": "each module names its local helpers by itself",
+    "7.2": "registers are written as they stand in the manuals",
+    "8.6": "cppcheck looks at every main at once",
+    "8.7": "board layers share functions that one configuration uses once",
+    "8.9": "constant tables stand above the function, for the reader",
+    "8.11": "symbols of the linker script have no size",
+    "10.1": "the integer model shifts signed numbers arithmetically, which is asserted",
+    "10.3": "as 10.4",
+    "10.4": "cppcheck mixes up small unsigned types and their promotion",
+    "10.8": "products are widened on purpose, and -Wconversion watches the rest",
+    "11.4": "addresses of registers are integers",
+    "11.5": "as 11.4",
+    "11.9": "cppcheck takes 0 in a struct for a pointer",
+    "12.1": "the usual precedence of C is assumed to be known",
+    "13.3": "walks over bytes step their pointer where they use it",
+    "14.2": "loops of the start-up code go over addresses",
+    "15.4": "as 15.5",
+    "15.5": "refusals leave a function early",
+    "15.7": "as 15.5",
+    "16.4": "switches over an enumeration list it whole, and -Wswitch watches that",
+    "17.8": "a parameter by value is a variable",
+    "18.4": "walks over bytes",
+    "18.8": "cppcheck takes an assertion of a size for an array of variable length",
+    "20.5": "X macros are taken back",
+    "20.7": "parameters of X macros are names",
+}
+"""Rules that do not gate, and why."""
+
+OTHER_PROGRAMS = re.compile(r"^(main|hk_hal_(host|linux)\w*|hk_image|hk_virtual_\w+)\.c$")
+"""Programs of the host, which use the C library; and the virtual sensor, which is no firmware."""
+
+FINDING = re.compile(r"^(?P<file>[^:]+):(?P<line>\d+): (?P<id>[\w.-]+): (?P<text>.*)$")
+IGNORED = ("toomanyconfigs", "missingIncludeSystem", "comparePointers", "unusedStructMember")
+"""Remarks on cppcheck itself; and start-up code, which compares symbols and places vectors."""
+
+
+def findings(folder: Path) -> list[str]:
+    """Return what gates, one line each."""
+    sources = sorted(p.name for p in folder.glob("*.c") if not OTHER_PROGRAMS.match(p.name))
+    command = [
+        "cppcheck",
+        "--quiet",
+        "--std=c99",
+        "--enable=warning,style,performance,portability",
+        "--addon=misra",
+        "--suppress=*:*mavlink*",
+        "--suppress=missingIncludeSystem",
+        "--template={file}:{line}: {id}: {message}",
+        "--max-configs=4",
+        "-I.",
+        "-Imavlink",
+        *sources,
+    ]
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
+    )
+    found = [match for line in done.stderr.splitlines() if (match := FINDING.match(line))]
+    assert sources
+    return sorted({match.group(0) for match in found if gates(match["id"])})
+
+
+def gates(name: str) -> bool:
+    return name not in IGNORED and name.removeprefix("misra-c2012-") not in LEFT_OUT
+
+
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040", "stm32f103"])
+@pytest.mark.parametrize("made", [design, all_parameters], ids=["eta", "all"])
+def test_cppcheck_finds_nothing(
+    tmp_path: Path, target: str, made: Callable[..., FilterDesign]
+) -> None:
+    program_or_skip("cppcheck")
+    assert findings(generated(target, tmp_path / "code", made())) == []
+
+
+@pytest.mark.parametrize(
+    ("new", "rule"),
+    [
+        ("if (load) { goto end; } end: filter->primed = 1U;", "misra-c2012-15.1"),
+        ("hk_filter_update(filter, accel_count, gyro_count); filter->primed = 1U;", "17.2"),
+        ("int32_t never[1]; filter->primed = (uint8_t)never[0];", "uninitvar"),
+        ("filter->primed = (uint8_t)tilt[HK_ANGLES];", "arrayIndexOutOfBounds"),
+    ],
+)
+def test_a_breach_is_found(tmp_path: Path, new: str, rule: str) -> None:
+    program_or_skip("cppcheck")
+    folder = generated("host", tmp_path / "code")
+    changed(folder / "hk_filter.c", "filter->primed = 1U;", new)
+    assert any(rule in line for line in findings(folder))
