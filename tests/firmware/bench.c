@@ -118,6 +118,31 @@ int bench_save(uint8_t place, float value)
     return dead != 0 ? -1 : (int)event;
 }
 
+int bench_save_again(uint8_t place, float first, float second, long bytes);
+
+/* Save in vain, for the memory takes nothing; then save something else while the supply fails. */
+int bench_save_again(uint8_t place, float first, float second, long bytes)
+{
+    hk_store_event_t event = HK_STORE_NOTHING;
+    hk_parameters_t parameters;
+    hk_store_t store;
+
+    bench_supply(-1, 0U, 0, 1);
+    start(&store, &parameters);
+    (void)hk_parameter_set(&parameters, place, first);
+    hk_store_save(&store, &parameters);
+    while (event == HK_STORE_NOTHING) {
+        event = hk_store_poll(&store);
+    }
+    bench_supply(bytes, 0U, 0, 0);
+    (void)hk_parameter_set(&parameters, place, second);
+    hk_store_save(&store, &parameters);
+    while (dead == 0 && hk_store_saving(&store)) {
+        (void)hk_store_poll(&store);
+    }
+    return (int)event;
+}
+
 /* What the next start would use. Returns whether there is a record. */
 int bench_load(uint8_t place, float *value)
 {

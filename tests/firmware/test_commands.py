@@ -1,5 +1,6 @@
 """Commands, time and ping, spoken with the host firmware by pymavlink."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,8 @@ from ground import (
 
 from hostkit import __version__
 from hostkit.design_file import digest
+from hostkit.emulation.board import PlannedFault
+from hostkit.emulation.fault import KINDS
 
 INTERVAL, REQUEST, CALIBRATE, STORE, REBOOT = 511, 512, 241, 245, 246
 SCALED_IMU, RAW_IMU, ATTITUDE, HIGHRES_IMU = 26, 27, 30, 105
@@ -291,3 +294,46 @@ def test_odd_ways_to_store_are_denied(host_folder: Path, what: float) -> None:
     ground = Ground()
     ground.command(1.0, STORE, what)
     assert acks(ground.run(host_folder, resting(200))) == [(STORE, DENIED)]
+
+
+# --- Self-test --------------------------------------------------------------------------------
+
+SELF_TEST = 31010
+FAULTS = [kind.name for kind in KINDS]
+
+
+@pytest.mark.parametrize(
+    ("fault", "amount", "result", "text"),
+    [
+        (None, 0, ACCEPTED, "Self-test passed"),
+        ("weak-response", 50, FAILED, "Self-test failed"),
+        ("no-trim", 0, FAILED, "Self-test has no factory figures"),
+    ],
+)
+def test_the_result_of_a_self_test_is_told(
+    host_folder: Path, fault: str | None, amount: int, result: int, text: str
+) -> None:
+    ground = Ground()
+    ground.command(1.0, SELF_TEST)
+    ground.command(1.1, SELF_TEST)  # one at a time
+    feels = resting(600)
+    if fault is not None:
+        planned = (PlannedFault(code=FAULTS.index(fault), row=10, amount=amount),)
+        feels = replace(feels, faults=replace(feels.faults, planned=planned))
+    heard = ground.run(host_folder, feels)
+    assert acks(heard) == [
+        (SELF_TEST, IN_PROGRESS),
+        (SELF_TEST, TEMPORARILY_REJECTED),
+        (SELF_TEST, result),
+    ]
+    assert texts(heard) == [text]
+    assert CALIBRATING in heard.states
+    assert heard.states[-1] == ACTIVE
+    assert len(heard.samples) > 300
+
+
+def test_a_sensor_that_does_not_run_is_not_tested(host_folder: Path) -> None:
+    ground = Ground()
+    ground.command(2.0, SELF_TEST)
+    heard = ground.run(host_folder, with_faults(stimulus(300), who_am_i=0x12))
+    assert acks(heard) == [(SELF_TEST, TEMPORARILY_REJECTED)]

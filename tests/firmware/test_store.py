@@ -1,5 +1,6 @@
 """The store by itself: whatever the supply does, a start finds the old record or the new one."""
 
+import ctypes
 from pathlib import Path
 
 import pytest
@@ -136,6 +137,16 @@ def test_a_memory_that_does_not_take_what_is_written_is_reported(bench: Bench) -
     bench.save(SYS_ID, OLD)
     bench.supply(broken=True)
     assert bench.save(SYS_ID, NEW) == FAILED
+    bench.supply()
+    assert bench.load(SYS_ID) == OLD
+
+
+@pytest.mark.parametrize("left", [0, 5, 20, 40])
+def test_after_a_failure_the_good_slot_is_still_left_alone(bench: Bench, left: int) -> None:
+    bench.erase()
+    bench.save(SYS_ID, OLD)
+    values = (ctypes.c_float(MIDDLE), ctypes.c_float(NEW))
+    assert bench.c.bench_save_again(SYS_ID, *values, ctypes.c_long(left)) == FAILED
     bench.supply()
     assert bench.load(SYS_ID) == OLD
 
