@@ -42,8 +42,8 @@ class Bench:
         if limit_bytes_s is not None:
             header = code / "hk_design.h"
             text, changes = re.subn(
-                r"(HK_LINK_USABLE_BYTES_S UINT32_C)\(\d+\)",
-                rf"\1({limit_bytes_s})",
+                r"(HK_LINK_USABLE_BYTES_S +)\d+",
+                rf"\g<1>{limit_bytes_s}",
                 header.read_text(encoding="ascii"),
             )
             assert changes == 1
