@@ -210,9 +210,15 @@ def test_a_wrong_key_locks_the_flash_until_a_reset(writer: Path, tmp_path: Path)
 
 
 def test_an_image_that_reaches_the_store_is_refused(code: Path) -> None:
+    own_bytes = stm32_board.build(code).flash_bytes or 0
     text = (code / "main.c").read_text(encoding="ascii")
-    big = "const unsigned char hk_big[52000] __attribute__((used)) = {1};\n"
     use = '    static hk_app_t app;\n    __asm__ volatile("" : : "r"(hk_big));\n'
-    text = text.replace("int main", big + "int main").replace("    static hk_app_t app;\n", use)
+    text = text.replace("    static hk_app_t app;\n", use)
+
+    def build_with(total_bytes: int) -> None:
+        big = f"static const unsigned char hk_big[{total_bytes - own_bytes}] = {{1}};\n"
+        program(code, text.replace("int main", big + "int main"))
+
+    build_with(61 * 1024)
     with pytest.raises(BuildError, match=r"FLASH.* overflowed|will not fit in region .FLASH"):
-        program(code, text)
+        build_with(63 * 1024)
