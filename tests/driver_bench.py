@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from boards import changed
+
 from hostkit.emulation.board import Stimulus
 from hostkit.emulation.fault import KINDS
 from hostkit.records import FilterDesign
 from hostkit.render import FirmwareOptions, generate, write
 from hostkit.targets import TARGETS
 
+LOSING = "    push_sample(sensor, burst);\n    (void)hk_virtual_fifo_pop(sensor);\n"
 ERRORS = (
     "transfer",
     "torn",
@@ -28,10 +31,16 @@ STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contr
 CHECKS = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
-def build(folder: Path, code: FilterDesign, *, fifo: bool) -> Path:
-    """Build for a design; the link is fast enough for any rate."""
+def build(folder: Path, code: FilterDesign, *, fifo: bool, losing: bool = False) -> Path:
+    """Build for a design, with a link that is fast enough for any rate.
+
+    With `losing` the virtual sensor's FIFO loses a byte of every sample.
+    """
     options = FirmwareOptions(acquisition="fifo" if fifo else "burst", baud=2_000_000)
     write(generate(code, TARGETS["host"], options), folder)
+    if losing:
+        model = folder / "hk_virtual_fifo.c"
+        changed(model, "    push_sample(sensor, burst);\n    for", LOSING + "    for")
     parts = ("hk_mpu6050*.c", "hk_self_test.c", "hk_virtual_*.c")
     sources = sorted(str(file) for part in parts for file in folder.glob(part))
     harness = Path(__file__).with_name("driver_bench.c")

@@ -34,7 +34,6 @@ static void forget(hk_mpu6050_fifo_t *fifo)
     fifo->crooked = false;
     fifo->uncounted = false;
     fifo->reset_due = false;
-    fifo->temperature_known = false;
     fifo->count_us = hk_hal_time_us();
 }
 
@@ -62,6 +61,7 @@ static bool reset_fifo(hk_mpu6050_t *sensor, uint32_t now_us)
 bool hk_mpu6050_begin_samples(hk_mpu6050_t *sensor, uint32_t now_us)
 {
     sensor->fifo.resets = 0U;
+    sensor->fifo.temperature_known = false;
     return reset_fifo(sensor, now_us);
 }
 
@@ -250,15 +250,16 @@ static int32_t temperature_of(const uint8_t *data)
     return (int16_t)(uint16_t)(((uint16_t)bytes[0] << 8) | bytes[1]);
 }
 
-/* The order of the bytes shows in the temperature, which does not jump. */
+/* The order of the bytes shows in the temperature, which does not jump; if it does, the next one is
+ * believed. */
 static bool is_in_order(hk_mpu6050_t *sensor, const uint8_t *data)
 {
     const int32_t jump = temperature_of(data) - temperature_of(sensor->last);
-    const bool known = sensor->fifo.temperature_known;
+    const bool jumps = sensor->fifo.temperature_known
+                       && (jump > HK_TEMPERATURE_JUMP || jump < -HK_TEMPERATURE_JUMP);
 
-    sensor->fifo.temperature_known = true;
-    return !is_one_byte(data)
-           && (!known || (jump <= HK_TEMPERATURE_JUMP && jump >= -HK_TEMPERATURE_JUMP));
+    sensor->fifo.temperature_known = !jumps;
+    return !jumps && !is_one_byte(data);
 }
 
 /* Where the sensor lets go of the bus, the rest reads all ones: then some of the sample is still in

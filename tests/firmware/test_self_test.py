@@ -42,7 +42,7 @@ def program(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return build(tmp_path_factory.mktemp("tested"), CODE, fifo=request.param == "fifo")
 
 
-def tested(report: Report) -> tuple[int, list[int], list[int]]:
+def verdict(report: Report) -> tuple[int, list[int], list[int]]:
     assert len(report.tested) == 1
     result, *pairs = report.tested[0]
     return result, pairs[::2], pairs[1::2]
@@ -54,7 +54,7 @@ def set_codes(*codes: int) -> str:
 
 def test_a_good_sensor_passes_and_is_set_up_anew(program: Path) -> None:
     report = run(program, at_rest(), set_codes(*CODES), "run 600", "test", "run 2500")
-    result, response, trim = tested(report)
+    result, response, trim = verdict(report)
     assert result == PASSED
     np.testing.assert_allclose(trim, trims(), atol=0.5)
     np.testing.assert_allclose(response, trims(), atol=8.0)
@@ -73,7 +73,7 @@ def test_trims_are_the_formulas(program: Path, code: int) -> None:
     report = run(
         program, at_rest(0.0), set_codes(high, high, high, low), "run 500", "test", "run 1500"
     )
-    result, _, trim = tested(report)
+    result, _, trim = verdict(report)
     assert result == PASSED
     accel = 4096 * 0.34 * (0.92 / 0.34) ** ((code - 1) / 30)
     gyro = 25 * 131 * 1.046 ** (code - 1)
@@ -94,7 +94,7 @@ def test_the_limit_is_14_percent_on_every_axis(
     program: Path, axis: int, percent: int, result: int
 ) -> None:
     commands = (set_codes(*CODES), f"response {axis} {percent}", "run 500", "test", "run 1500")
-    assert tested(run(program, at_rest(), *commands))[0] == result
+    assert verdict(run(program, at_rest(), *commands))[0] == result
 
 
 def test_a_sensor_that_moves_is_told_from_a_bad_one(program: Path) -> None:
@@ -108,17 +108,17 @@ def test_a_sensor_that_moves_is_told_from_a_bad_one(program: Path) -> None:
         settle_samples=feels.settle_samples,
     )
     commands = ("rate 10000", set_codes(*CODES), "run 600", "test", "run 1500")
-    assert tested(run(program, moving, *commands))[0] == MOVED
-    assert tested(run(program, feels, *commands))[0] == PASSED, "the noise of the part is no motion"
+    assert verdict(run(program, moving, *commands))[0] == MOVED
+    assert verdict(run(program, feels, *commands))[0] == PASSED, "the noise of the part is no motion"
 
 
 def test_a_sensor_without_codes_has_no_figures(program: Path) -> None:
     report = run(program, at_rest(), at_once("no-trim"), "run 500", "test", "run 1500")
-    result, _, trim = tested(report)
+    result, _, trim = verdict(report)
     assert result == NO_TRIM
     assert trim == [0] * 6
     one_missing = (CODES[0] & 0xE0, *CODES[1:])
-    result, _, trim = tested(
+    result, _, trim = verdict(
         run(program, at_rest(), set_codes(*one_missing), "run 500", "test", "run 1500")
     )
     assert result == NO_TRIM
@@ -133,12 +133,12 @@ def test_a_failed_axis_counts_more_than_a_missing_code(program: Path) -> None:
         "test",
         "run 1500",
     )
-    assert tested(run(program, at_rest(), *commands))[0] == FAILED
+    assert verdict(run(program, at_rest(), *commands))[0] == FAILED
 
 
 def test_another_part_is_not_tested(program: Path) -> None:
     report = run(program, at_rest(), "identity 112", "run 600", "test", "run 300")
-    assert tested(report)[0] == VARIANT
+    assert verdict(report)[0] == VARIANT
     assert report.starts == 1
     assert set(np.diff(report.time_us)) == {10_000}, "it goes on"
 
@@ -146,7 +146,7 @@ def test_another_part_is_not_tested(program: Path) -> None:
 def test_a_fault_of_the_bus_does_not_spoil_the_test(program: Path) -> None:
     for what in (("nack-address", 5), ("torn-burst", 4), ("nack-data", 3)):
         commands = (set_codes(*CODES), "run 500", "test", fault(*what), "run 3000")
-        assert tested(run(program, at_rest(), *commands))[0] == PASSED
+        assert verdict(run(program, at_rest(), *commands))[0] == PASSED
     feels = at_rest()
     commands = (
         set_codes(*CODES),
@@ -158,4 +158,4 @@ def test_a_fault_of_the_bus_does_not_spoil_the_test(program: Path) -> None:
     )
     report = run(program, feels, *commands)
     assert report.errors["dead bus"] == 1
-    assert tested(report)[0] == PASSED, "it is made after the restart"
+    assert verdict(report)[0] == PASSED, "it is made after the restart"
