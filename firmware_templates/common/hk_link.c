@@ -7,6 +7,10 @@
 #include "hk_design.h"
 #include "hk_hal.h"
 
+#if HK_SIGNING
+#error "messages are not signed yet: generate without signing"
+#endif
+
 #define HK_HEADER_BYTES 10U
 
 void hk_link_init(hk_link_t *link, uint8_t system_id)
