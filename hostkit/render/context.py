@@ -12,6 +12,7 @@ from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
+from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
@@ -142,6 +143,7 @@ class RenderContext:
     design: DesignContext
     spec: FixedPointSpec
     filter: FilterContext
+    real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
     root_fraction_bits: int
@@ -181,6 +183,7 @@ def render_context(
         design=_design_context(design),
         spec=spec,
         filter=filter_context(spec, design.rate_hz),
+        real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,

@@ -140,6 +140,8 @@ def test_samples_at_a_rate_that_is_no_divisor_are_refused_with_the_nearest() -> 
         ("rp2040", 921600, None),
         ("atmega328p", 115200, None),
         ("host", 123456, None),
+        ("linux", 460800, None),
+        ("linux", 250000, r"makes 230400 of 250000 baud.* 230400, 460800"),
     ],
 )
 def test_baud_that_the_target_cannot_make_is_refused(target: str, baud: int, says) -> None:
