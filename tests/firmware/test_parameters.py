@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import RESTARTED, generated, hear, stimulus
+from boards import RESTARTED, Heard, copied, generated, hear, stimulus
 from designs import all_parameters, design
 from ground import Ground, resting, values
 
@@ -133,6 +133,36 @@ def test_a_sample_is_made_with_the_value_told_before_it(host_folder: Path) -> No
     assert wrong_steps(before, old) == 0
     assert wrong_steps([before[-1], *behind], new) == 0
     assert wrong_steps([before[-1], *behind], old) > 100
+
+
+def test_no_sample_is_told_behind_a_value_that_it_was_not_made_with(
+    host_folder: Path, tmp_path: Path
+) -> None:
+    """On a link that is full most of the time samples wait, and values must wait for them."""
+    folder = copied(host_folder, tmp_path / "code")
+    full = "return board.now_ns / 1000000U % 7U < 2U ? UINT8_MAX : 20U;"
+    text = (folder / "hk_hal_host.c").read_text(encoding="ascii")
+    assert text.count("return UINT8_MAX;") == 1
+    (folder / "hk_hal_host.c").write_text(text.replace("return UINT8_MAX;", full), encoding="ascii")
+    host_board.build(folder, sanitize=True)
+    ground = Ground()
+    own = values(_told(host_folder))[0][1]
+    for i in range(60):
+        ground.set(0.5 + 0.023 * i, "FILT_TAU", 1.0 if i % 2 == 0 else own)
+    retuned, checked = False, 0
+    for frame in ground.run(folder, stimulus(250)).frames:
+        if frame.name == "PARAM_VALUE":
+            retuned = frame.message.param_value != own
+        elif frame.name == "TILT_SAMPLE":
+            assert bool(frame.message.flags & RETUNED) == retuned, frame.message.sequence
+            checked += retuned
+    assert checked > 20
+
+
+def _told(folder: Path) -> Heard:
+    ground = Ground()
+    ground.read(0.5, "FILT_TAU")
+    return ground.run(folder, stimulus(100))
 
 
 def test_a_bias_restarts_the_filter_that_follows_it(tmp_path: Path) -> None:

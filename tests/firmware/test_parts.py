@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from bench import Bench
 from designs import all_parameters, design
+from pymavlink.generator.mavcrc import x25crc
 
 from hostkit.dialect import python_module
 from hostkit.units import STANDARD_GRAVITY_M_S2
@@ -261,9 +262,12 @@ def test_frames_that_are_not_listened_to_are_passed_over(bench: Bench) -> None:
 
 
 def test_a_message_of_a_longer_identity_is_none_of_ours(bench: Bench) -> None:
-    frame = bytearray(COMMAND)
-    frame[9] = 1  # 65612
-    assert bench.receive(bytes(frame) + PING) == [4]
+    body = bytearray(COMMAND[1:-2])
+    body[8] = 1  # 65612, of which 76 is left in two bytes
+    crc = x25crc(bytes(body) + bytes([152])).crc
+    assert bench.receive(COMMAND) == [76]
+    assert bench.receive(b"\xfd" + bytes(body) + crc.to_bytes(2, "little") + PING) == [4]
+    assert bench.receiver_errors == 0
 
 
 def test_flags_that_are_not_understood_pass_the_frame_over(bench: Bench) -> None:
