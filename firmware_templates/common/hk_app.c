@@ -183,15 +183,15 @@ static bool send_due(hk_app_t *app)
 
     hk_stream_time(&app->stream, (uint32_t)app->now_us);
     while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+#if HK_SIGNING
+        if (app->link.signing.worked) {
+            return true;
+        }
+#endif
         if (!hk_telemetry_stream(app, which)) {
             return false;
         }
         hk_stream_sent(&app->stream, which);
-#if HK_SIGNING
-        if (app->link.signing.active) {
-            return true;
-        }
-#endif
     }
     if (app->version_wanted && hk_telemetry_version(app)) {
         app->version_wanted = false;
@@ -229,6 +229,9 @@ bool hk_app_poll(hk_app_t *app)
 
     advance_clock(app);
     hk_hal_watchdog_feed();
+#if HK_SIGNING
+    hk_signing_turn(&app->link.signing);
+#endif
     more = hk_protocol_poll(app);
     hk_settings_poll(app);
     poll_sensor(app);
