@@ -182,7 +182,8 @@ static bool send_due(hk_app_t *app)
     uint8_t which;
 
     hk_stream_time(&app->stream, (uint32_t)app->now_us);
-    while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+    for (which = hk_stream_next(&app->stream); which != HK_NO_STREAM;
+         which = hk_stream_next(&app->stream)) {
 #if HK_SIGNING
         if (app->link.signing.worked) {
             return true;

@@ -401,6 +401,8 @@ def test_the_way_back_to_the_design_leaves_the_secret(folder: Path, locked: byte
     ground.command(0.7, STORE, RESET)
     run = ground.board_run(folder, stimulus(600), store=locked)
     assert (STORE, ACCEPTED) in acks(hear(run))
+    stamps = timestamps(hear(run))
+    assert stamps == sorted(set(stamps)), "all parameters are told in one instant"
     again = Signer().board_run(folder, stimulus(100), store=run.store)
     assert verified(again, SECRET).good == len(hear(again).frames)
 
