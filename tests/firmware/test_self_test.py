@@ -109,7 +109,9 @@ def test_a_sensor_that_moves_is_told_from_a_bad_one(program: Path) -> None:
     )
     commands = ("rate 10000", set_codes(*CODES), "run 600", "test", "run 1500")
     assert verdict(run(program, moving, *commands))[0] == MOVED
-    assert verdict(run(program, feels, *commands))[0] == PASSED, "the noise of the part is no motion"
+    assert verdict(run(program, feels, *commands))[0] == PASSED, (
+        "the noise of the part is no motion"
+    )
 
 
 def test_a_sensor_without_codes_has_no_figures(program: Path) -> None:
