@@ -66,6 +66,8 @@ typedef struct {
     uint8_t counted;     /* samples that it held then */
     uint8_t taken;       /* of these, since */
     uint8_t left;        /* that may be taken before they are counted again */
+    uint8_t resets;      /* in a row, without a sample between them */
+    bool uncounted;      /* the status was read, but the samples could not be counted */
     bool crooked;        /* the count was not one of whole samples */
     bool reset_due;
     bool temperature_known;
@@ -82,6 +84,7 @@ typedef struct {
     uint32_t check_us;  /* when a register was last checked */
     uint8_t step;       /* register of the configuration, or try of the identification */
     uint8_t check_step; /* register to be checked next */
+    bool check_standby; /* it is the turn of PWR_MGMT_2 */
     uint8_t failures;   /* consecutive failed transfers */
     uint8_t who_am_i;   /* last identity read; 0 if none could be */
     uint8_t to_drop;    /* samples still to be dropped */

@@ -5,7 +5,7 @@
 #include "hk_hal.h"
 #include "hk_mpu6050_parts.h"
 
-#define HK_CHECK_US (100U * HK_MS)
+#define HK_CHECK_US (50U * HK_MS)
 
 #define HK_REGISTER_WRITE(register_address, register_value) \
     {.address = (register_address), .value = (register_value)},
@@ -93,12 +93,17 @@ hk_register_write_t hk_mpu6050_configuration(uint8_t step)
     return write;
 }
 
-/* Asleep or resetting: it lost them all. */
+/* All ones is what is read where the sensor has let go of the bus. Asleep or resetting: it lost them
+ * all. */
 void hk_mpu6050_wrong_register(hk_mpu6050_t *sensor, hk_register_write_t found, uint32_t now_us)
 {
     const uint8_t lost = HK_PWR_DEVICE_RESET | HK_PWR_SLEEP;
     uint8_t power = 0U;
 
+    if (found.value == 0xFFU) {
+        hk_mpu6050_fail(sensor, HK_MPU6050_TORN, now_us);
+        return;
+    }
     sensor->bad_register = found.address;
     sensor->bad_value = found.value;
     if (found.address != HK_REG_PWR_MGMT_1
@@ -109,12 +114,16 @@ void hk_mpu6050_wrong_register(hk_mpu6050_t *sensor, hk_register_write_t found, 
     }
 }
 
-/* What a register of the table holds while the sensor runs; behind the table comes the clock. */
+/* What a register of the table holds while the sensor runs; behind the table comes the clock. Every
+ * other time it is the turn of the one that can let a single axis stand still. */
 static hk_register_write_t running_value(const hk_mpu6050_t *sensor)
 {
     hk_register_write_t wanted = {.address = HK_REG_PWR_MGMT_1, .value = HK_PWR_CLOCK_PLL};
 
-    if (sensor->check_step < hk_mpu6050_configuration_steps(sensor)) {
+    if (sensor->check_standby) {
+        wanted.address = HK_REG_PWR_MGMT_2;
+        wanted.value = HK_RESET_PWR_MGMT_2;
+    } else if (sensor->check_step < hk_mpu6050_configuration_steps(sensor)) {
         wanted = hk_mpu6050_configuration(sensor->check_step);
     }
     if (wanted.address == HK_REG_INT_ENABLE) {
@@ -143,9 +152,12 @@ bool hk_mpu6050_next_register_holds(hk_mpu6050_t *sensor, uint32_t now_us)
         return false;
     }
     sensor->check_us = now_us;
-    sensor->check_step = sensor->check_step < hk_mpu6050_configuration_steps(sensor)
-                             ? (uint8_t)(sensor->check_step + 1U)
-                             : 0U;
+    sensor->check_standby = !sensor->check_standby;
+    if (sensor->check_standby) {
+        sensor->check_step = sensor->check_step < hk_mpu6050_configuration_steps(sensor)
+                                 ? (uint8_t)(sensor->check_step + 1U)
+                                 : 0U;
+    }
     return true;
 }
 

@@ -15,6 +15,7 @@
 #define HK_RETRY_GAP_US  (1U * HK_MS)
 /* An announcement is of use for the time stamps unless it is of a sample so far behind. */
 #define HK_BEHIND_MAX    4U
+#define HK_RESETS_MAX    5U
 /* 3 degC from one sample to the next are no temperature. */
 #define HK_TEMPERATURE_JUMP 1024L
 #define HK_TEMPERATURE_PLACE 6U
@@ -31,14 +32,15 @@ static void forget(hk_mpu6050_fifo_t *fifo)
     fifo->taken = 0U;
     fifo->left = 0U;
     fifo->crooked = false;
+    fifo->uncounted = false;
     fifo->reset_due = false;
-    fifo->temperature_known = false;
     fifo->count_us = hk_hal_time_us();
 }
 
 /* Empty the FIFO and let samples in again. FIFO_RESET acts only while the FIFO is off. */
-static bool reset_fifo(hk_mpu6050_t *sensor, uint8_t interrupts, uint32_t now_us)
+static bool reset_fifo(hk_mpu6050_t *sensor, uint32_t now_us)
 {
+    const uint8_t interrupts = HK_INT_DATA_READY | HK_INT_FIFO_OVERFLOW;
     uint8_t stale = 0U;
 
     sensor->fifo.reset_due = true;
@@ -52,18 +54,32 @@ static bool reset_fifo(hk_mpu6050_t *sensor, uint8_t interrupts, uint32_t now_us
         return false;
     }
     forget(&sensor->fifo);
+    sensor->since_us = now_us; /* new samples have their time */
     return true;
 }
 
 bool hk_mpu6050_begin_samples(hk_mpu6050_t *sensor, uint32_t now_us)
 {
-    return reset_fifo(sensor, HK_INT_DATA_READY | HK_INT_FIFO_OVERFLOW, now_us);
+    sensor->fifo.resets = 0U;
+    sensor->fifo.temperature_known = false;
+    return reset_fifo(sensor, now_us);
+}
+
+/* Empty it because of a fault; if that does not help, begin again. */
+static void repair_fifo(hk_mpu6050_t *sensor, uint32_t now_us)
+{
+    if (sensor->fifo.resets == HK_RESETS_MAX) {
+        hk_mpu6050_begin_again(sensor, HK_MPU6050_SILENT, now_us);
+    } else if (reset_fifo(sensor, now_us)) {
+        sensor->fifo.resets++;
+    }
 }
 
 /* What is in the FIFO cannot be used: empty it with the next step. */
-static void give_up(hk_mpu6050_t *sensor, hk_mpu6050_kind_t kind)
+static void give_up(hk_mpu6050_t *sensor, hk_mpu6050_kind_t kind, uint32_t now_us)
 {
     hk_mpu6050_count_error(sensor, kind);
+    sensor->since_us = now_us; /* it is not silent */
     sensor->fifo.left = 0U;
     sensor->fifo.reset_due = true;
 }
@@ -78,7 +94,7 @@ static void set_clock(hk_mpu6050_t *sensor, uint32_t announced_us)
     if ((int32_t)(announced_us - fifo->count_us) > 0) {
         behind++;
     }
-    if (behind <= HK_BEHIND_MAX) {
+    if (behind <= HK_BEHIND_MAX && !fifo->uncounted) {
         fifo->next_us = announced_us + HK_PERIOD_US - behind * HK_PERIOD_US;
     }
 }
@@ -109,6 +125,19 @@ static bool worth_looking(hk_mpu6050_t *sensor, uint32_t now_us)
     return true;
 }
 
+/* Read the status, which has never all bits set. Returns whether it is one that can be. */
+static bool read_status(hk_mpu6050_t *sensor, uint32_t now_us, uint8_t *status)
+{
+    if (!hk_mpu6050_get(sensor, HK_REG_INT_STATUS, status, 1U, now_us)) {
+        return false;
+    }
+    if (*status == 0xFFU) {
+        hk_mpu6050_fail(sensor, HK_MPU6050_TORN, now_us);
+        return false;
+    }
+    return true;
+}
+
 /* Read the count. Returns whether it is one that can be; *bytes is then valid. */
 static bool read_count(hk_mpu6050_t *sensor, uint32_t now_us, uint16_t *bytes)
 {
@@ -132,17 +161,17 @@ static bool count_packets(hk_mpu6050_t *sensor, uint32_t now_us, uint8_t *packet
     uint16_t bytes = 0U;
     uint8_t status = 0U;
 
-    if (!hk_mpu6050_get(sensor, HK_REG_INT_STATUS, &status, 1U, now_us)
-        || !read_count(sensor, now_us, &bytes)) {
+    fifo->uncounted = true;
+    if (!read_status(sensor, now_us, &status) || !read_count(sensor, now_us, &bytes)) {
         return false;
     }
     if ((status & HK_INT_FIFO_OVERFLOW) != 0U || bytes == HK_MPU6050_FIFO_BYTES) {
-        give_up(sensor, HK_MPU6050_OVERFLOW);
+        give_up(sensor, HK_MPU6050_OVERFLOW, now_us);
         return false;
     }
     if (bytes % HK_PACKET_BYTES != 0U) {
         if (fifo->crooked) {
-            give_up(sensor, HK_MPU6050_MISALIGNED);
+            give_up(sensor, HK_MPU6050_MISALIGNED, now_us);
         } else {
             fifo->crooked = true; /* a sample may just be on its way in: count once more */
             hk_mpu6050_fail(sensor, HK_MPU6050_TRANSFER, now_us);
@@ -178,20 +207,20 @@ static bool look(hk_mpu6050_t *sensor, uint32_t now_us)
     fifo->counted = packets;
     fifo->taken = 0U;
     fifo->count_us = hk_hal_time_us();
-    if (packets == 0U && !expected) {
-        (void)(hk_mpu6050_scale_holds(sensor, now_us)
-               && hk_mpu6050_next_register_holds(sensor, now_us));
-        return false;
-    }
+    fifo->uncounted = false;
     if (!hk_mpu6050_registers_hold(sensor, now_us)) {
         return false;
     }
     sensor->owed = false;
-    if (packets > 0U && !expected) {
+    if (packets == 0U) {
+        (void)hk_mpu6050_next_register_holds(sensor, now_us); /* why not? */
+        return false;
+    }
+    if (!expected) {
         take_note_of_lost_ready(sensor, packets, now_us);
     }
     fifo->left = packets < HK_BATCH ? packets : HK_BATCH;
-    return packets > 0U;
+    return true;
 }
 
 /* So late the FIFO may have lost what was counted, and with it its order. */
@@ -221,15 +250,16 @@ static int32_t temperature_of(const uint8_t *data)
     return (int16_t)(uint16_t)(((uint16_t)bytes[0] << 8) | bytes[1]);
 }
 
-/* The order of the bytes shows in the temperature, which does not jump. */
+/* The order of the bytes shows in the temperature, which does not jump; if it does, the next one is
+ * believed. */
 static bool is_in_order(hk_mpu6050_t *sensor, const uint8_t *data)
 {
     const int32_t jump = temperature_of(data) - temperature_of(sensor->last);
-    const bool known = sensor->fifo.temperature_known;
+    const bool jumps = sensor->fifo.temperature_known
+                       && (jump > HK_TEMPERATURE_JUMP || jump < -HK_TEMPERATURE_JUMP);
 
-    sensor->fifo.temperature_known = true;
-    return !is_one_byte(data)
-           && (!known || (jump <= HK_TEMPERATURE_JUMP && jump >= -HK_TEMPERATURE_JUMP));
+    sensor->fifo.temperature_known = !jumps;
+    return !jumps && !is_one_byte(data);
 }
 
 /* Where the sensor lets go of the bus, the rest reads all ones: then some of the sample is still in
@@ -248,7 +278,7 @@ static bool was_whole(hk_mpu6050_t *sensor, const uint8_t *data, uint32_t now_us
     if (bytes % HK_PACKET_BYTES == 0U) {
         return true;
     }
-    give_up(sensor, HK_MPU6050_TORN);
+    give_up(sensor, HK_MPU6050_TORN, now_us);
     return false;
 }
 
@@ -269,7 +299,7 @@ static bool take(hk_mpu6050_t *sensor, uint32_t now_us, uint8_t *data)
         return false;
     }
     if (!is_in_order(sensor, data)) {
-        give_up(sensor, HK_MPU6050_MISALIGNED);
+        give_up(sensor, HK_MPU6050_MISALIGNED, now_us);
         return false;
     }
     return true;
@@ -283,7 +313,7 @@ bool hk_mpu6050_acquire(hk_mpu6050_t *sensor, uint32_t now_us, uint8_t *data, ui
         return false;
     }
     if (fifo->reset_due) {
-        (void)reset_fifo(sensor, HK_INT_DATA_READY | HK_INT_FIFO_OVERFLOW, now_us);
+        repair_fifo(sensor, now_us);
         return false;
     }
     if (fifo->left == 0U && (!worth_looking(sensor, now_us) || !look(sensor, now_us))) {
@@ -293,6 +323,7 @@ bool hk_mpu6050_acquire(hk_mpu6050_t *sensor, uint32_t now_us, uint8_t *data, ui
         return false;
     }
     sensor->overdue = false;
+    fifo->resets = 0U;
     *time_us = fifo->next_us;
     fifo->next_us += HK_PERIOD_US;
     return true;

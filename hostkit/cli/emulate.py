@@ -198,6 +198,7 @@ def _report_document(report: FaultReport | None) -> dict[str, object]:
             "texts": list(report.texts),
         },
         "repeated": report.repeated,
+        "spoilt": report.spoilt,
         "recovered": report.recovered,
     }
 
@@ -237,6 +238,7 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
         click.echo(
             f"injected {', '.join(report.injected)}: {report.errors} errors, "
             f"{report.restarts} restarts, {report.repeated} repeated samples, "
+            f"{report.spoilt} with a spoilt axis, "
             f"{'recovered' if report.recovered else 'not recovered'}; "
             f"the firmware says: {_texts(report)}"
         )

@@ -173,7 +173,12 @@ def compare_with_faults(
     frames, trace = heard
     sent = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
     elapsed = np.diff(trace.time_us, prepend=0) * 1e-6 * design.rate_hz
-    row = rows_of(sent, counts, np.ceil(elapsed).astype(np.int64))
+    row, spoilt = rows_of(
+        sent,
+        counts,
+        np.ceil(elapsed).astype(np.int64),
+        spoilt_axes=int(any(fault.spoils_an_axis for fault in faults)),
+    )
     repeated = repeats(sent) & (row < 0)
     wanted, exact = answers_of_models(design, sent, trace.restarted)
     residual = _residual_rad(trace.state_raw, exact)
@@ -198,6 +203,7 @@ def compare_with_faults(
             restarts=max(int(trace.restarted.sum()) - 1, 0),
             texts=said(frames),
             repeated=int(repeated.sum()),
+            spoilt=int(spoilt.sum()),
             recovered=bool(len(row) and row[-1] == len(counts) - 1 and is_active(frames)),
         ),
     )

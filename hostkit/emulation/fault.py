@@ -65,6 +65,10 @@ Axes 0 to 2 are the accelerometer's, 3 to 5 the gyroscope's; 0 samples last unti
 """
 
 
+STANDBY_REGISTER = 0x6C
+SPOILING = ("stuck-value", "saturated-axis")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
     """One fault and when it strikes: at a time of the recording, s."""
@@ -75,6 +79,12 @@ class Fault:
 
     def __str__(self) -> str:
         return f"{self.kind.name}={self.amount}@{self.time_s:g}"
+
+    @property
+    def spoils_an_axis(self) -> bool:
+        """Whether one axis of samples is wrong, and nothing tells them from true ones."""
+        standby = self.kind.name == "register-upset" and self.amount >> 8 == STANDBY_REGISTER
+        return standby or self.kind.name in SPOILING
 
     def row(self, rate_hz: float) -> int:
         """Return the row of the recording at whose sampling it strikes."""

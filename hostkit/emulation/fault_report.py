@@ -38,6 +38,9 @@ class FaultReport:
         What the firmware said, each text once, in order.
     repeated
         Samples that only repeat the one before: the sensor had frozen and it was not yet known.
+    spoilt
+        Samples of which one axis is not the recording's, in a run with a fault that does so and
+        cannot be told from motion.
     recovered
         Whether the last row of the recording came back and the firmware is active at the end.
     """
@@ -48,11 +51,14 @@ class FaultReport:
     restarts: int
     texts: tuple[str, ...]
     repeated: int
+    spoilt: int
     recovered: bool
 
 
-def rows_of(counts: Counts, wanted: Counts, elapsed: IntArray) -> IntArray:
-    """Return which row of a recording each sample is, -1 where it is none.
+def rows_of(
+    counts: Counts, wanted: Counts, elapsed: IntArray, *, spoilt_axes: int = 0
+) -> tuple[IntArray, BoolArray]:
+    """Return which row of a recording each sample is, -1 where it is none, and which are spoilt.
 
     Rows may be lost but not change their order, and not more than the time stamps allow.
 
@@ -64,19 +70,23 @@ def rows_of(counts: Counts, wanted: Counts, elapsed: IntArray) -> IntArray:
         What the sensor gives for the recording.
     elapsed
         Sample periods since the sample before, shape ``(N,)``.
+    spoilt_axes
+        So many of the six counts of a sample may be others than the row's.
     """
     sent = np.hstack([counts.accel, counts.gyro])
     table = np.hstack([wanted.accel, wanted.gyro])
     rows = np.full(len(sent), -1, dtype=np.int64)
+    spoilt = np.zeros(len(sent), dtype=np.bool_)
     following = passed = 0
     for i, sample in enumerate(sent):
         passed += int(elapsed[i])
         window = table[following : following + passed + SEARCH_MARGIN]
-        found = np.flatnonzero((window == sample).all(axis=1))
-        if found.size:
-            rows[i] = following + int(found[0])
+        wrong = (window != sample).sum(axis=1)
+        if wrong.size and wrong.min() <= spoilt_axes:
+            rows[i] = following + int(wrong.argmin())
+            spoilt[i] = wrong.min() > 0
             following, passed = int(rows[i]) + 1, 0
-    return rows
+    return rows, spoilt
 
 
 def repeats(counts: Counts) -> BoolArray:

@@ -212,7 +212,7 @@ def _design_context(design: FilterDesign) -> DesignContext:
 
 
 def _version_number(version: str) -> int:
-    """Return a version as AUTOPILOT_VERSION has it: a byte each for major, minor, patch and kind."""
+    """Return a version as AUTOPILOT_VERSION has it: bytes of major, minor, patch and kind."""
     parts = [int(part) for part in re.findall(r"\d+", version)[:3]]
     return int.from_bytes(bytes([*parts, 0, 0, 0, 0][:4]), "big")
 

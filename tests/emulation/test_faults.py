@@ -34,6 +34,7 @@ class Promise:
     missing: int = 0  # at most
     errors: tuple[int, int] = (0, 0)  # from, to
     repeated: int = 0
+    spoilt: tuple[int, int] = (0, 0)  # from, to
 
     def __str__(self) -> str:
         return self.fault
@@ -64,13 +65,30 @@ PROMISES = (
         "register-upset=0x6B40@0.5", (f"{SAYS}restart, register 0x6B was 0x41 #1",), 1, 1, (1, 1)
     ),
     Promise(
-        "register-upset=0x6C20@0.5", (f"{SAYS}restart, register 0x6C was 0x20 #1",), 1, 1, (1, 1)
+        "register-upset=0x6C20@0.5",
+        (f"{SAYS}restart, register 0x6C was 0x20 #1",),
+        1,
+        1,
+        (1, 1),
+        spoilt=(1, 11),
     ),
     Promise("self-reset@0", (f"{SAYS}had reset itself, restart #1",), errors=(1, 1)),
     Promise("self-reset@0.5", (f"{SAYS}had reset itself, restart #1",), 1, 0, (1, 1)),
     Promise("frozen-data@0.5", (f"{SAYS}frozen, restart #1",), 1, 50, (1, 1), 49),
     Promise("lost-data-ready=50@0.5", (f"{SAYS}INT lost, polling #1",), 0, 3, (1, 1)),
     Promise("lost-data-ready=9999@0.5", (f"{SAYS}INT lost, polling #1",), 0, 3, (1, 1)),
+    Promise("brown-out-write=0@0"),  # that write is the reset itself
+    Promise("brown-out-write=5@0", (f"{SAYS}bus failed, restart #1",), errors=(1, 15)),
+    Promise("brown-out-write=12@0", (f"{SAYS}had reset itself, restart #1",), errors=(1, 15)),
+    Promise("brown-out-write=0@0.5"),
+    Promise("stuck-value=0x3200@0.5", spoilt=(50, 50)),
+    Promise("stuck-value=0x3205@0.5", spoilt=(50, 50)),
+    Promise("saturated-axis=0x0A01@0.5", spoilt=(10, 10)),
+    Promise("fifo-overflow=80@0.5"),
+    Promise("torn-count=0x6A@0.5"),
+    Promise("misaligned=1@0.5"),
+    Promise("weak-response=50@0.5"),
+    Promise("no-trim@0.5"),
     Promise("wrong-identity=0x70", (f"{SAYS}WHO_AM_I 0x70 taken for MPU-6500",)),
     Promise("wrong-identity=0x98", (f"{SAYS}WHO_AM_I 0x98 taken for ICM-20689",)),
     Promise("wrong-identity=0x72", (f"{SAYS}WHO_AM_I 0x72 taken for unknown clone",)),
@@ -102,6 +120,7 @@ def assert_kept(result: EmulationResult, promise: Promise) -> None:
     assert report.texts == promise.texts
     assert report.restarts == promise.restarts
     assert report.repeated == promise.repeated
+    assert promise.spoilt[0] <= report.spoilt <= promise.spoilt[1]
     assert promise.errors[0] <= report.errors <= promise.errors[1]
     assert result.mismatches == 0
     assert result.missing <= promise.missing
@@ -123,11 +142,17 @@ def test_pico_keeps_the_promise(pico_folder: Path, promise: Promise) -> None:
     assert_kept(run(pico_folder, "rp2040", promise.fault), promise)
 
 
-@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040"])
+@pytest.mark.parametrize("promise", PROMISES, ids=str)
+def test_blue_pill_keeps_the_promise(stm32_folder: Path, promise: Promise) -> None:
+    assert_kept(run(stm32_folder, "stm32f103", promise.fault), promise)
+
+
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040", "stm32f103"])
 def test_a_foreign_part_is_refused_and_does_not_recover(
-    host_folder: Path, avr_folder: Path, pico_folder: Path, target: str
+    request: pytest.FixtureRequest, target: str
 ) -> None:
-    folder = {"host": host_folder, "atmega328p": avr_folder, "rp2040": pico_folder}[target]
+    names = {"host": "host", "atmega328p": "avr", "rp2040": "pico", "stm32f103": "stm32"}
+    folder = request.getfixturevalue(f"{names[target]}_folder")
     result = run(folder, target, "wrong-identity=0x12")
     assert result.fault_report is not None
     assert result.fault_report.texts == ("MPU-6050 refused: WHO_AM_I is 0x12",)
@@ -240,9 +265,24 @@ def test_rows_are_found_in_order_and_within_the_time() -> None:
     wanted = Counts(accel=table, gyro=table)
     order = np.array([0, 1, 1, 4, 3, 19])
     sent = Counts(accel=table[order], gyro=table[order])
-    assert rows_of(sent, wanted, np.ones(6, dtype=np.int64)).tolist() == [0, 1, -1, 4, -1, -1]
+    rows, spoilt = rows_of(sent, wanted, np.ones(6, dtype=np.int64))
+    assert rows.tolist() == [0, 1, -1, 4, -1, -1]
+    assert not spoilt.any()
     far = np.array([1, 1, 1, 3, 1, 12])
-    assert rows_of(sent, wanted, far).tolist() == [0, 1, -1, 4, -1, 19]
+    assert rows_of(sent, wanted, far)[0].tolist() == [0, 1, -1, 4, -1, 19]
+
+
+def test_rows_with_a_spoilt_axis_are_found_if_wanted() -> None:
+    table = np.arange(15).reshape(5, 3)
+    wanted = Counts(accel=table, gyro=table)
+    accel = table.copy()
+    accel[2, 1], accel[3, :2] = 99, 99
+    sent = Counts(accel=accel, gyro=table)
+    steps = np.ones(5, dtype=np.int64)
+    rows, spoilt = rows_of(sent, wanted, steps, spoilt_axes=1)
+    assert rows.tolist() == [0, 1, 2, -1, 4]
+    assert spoilt.tolist() == [False, False, True, False, False]
+    assert rows_of(sent, wanted, steps)[0].tolist() == [0, 1, -1, -1, 4]
 
 
 def test_the_command_reports_faults_as_json(

@@ -219,12 +219,6 @@ bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
 {
     uint8_t i;
 
-    if ((trouble() & 0x1FU) == 0x1FU) {
-        return false; /* no room */
-    }
-    if (count == 0U || bytes[0] != MAVLINK_STX) {
-        abort();
-    }
     for (i = 0U; i < count; i++) {
         take_frame(bytes[i]);
     }
@@ -233,7 +227,9 @@ bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
 
 uint8_t hk_hal_transmit_room(void)
 {
-    return 255U;
+    const uint8_t what = trouble();
+
+    return (what & 0x1FU) == 0x1FU ? what : 255U;
 }
 
 bool hk_hal_receive(uint8_t *byte)

@@ -12,7 +12,7 @@ from designs import all_parameters
 HERE = Path(__file__).parent
 SECONDS = int(os.environ.get("HOSTKIT_FUZZ_S", "60"))
 HARNESSES = ("fuzz_link", "fuzz_driver")
-BOARD_FILES = ("main.c", "hk_hal_host.c")
+BOARD_FILES = ("hk_hal_", "hk_host_", "hk_virtual_")
 SANITIZERS = ("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all")
 LIMITS = ("-max_len=4096", "-timeout=20", "-rss_limit_mb=1024", "-print_final_stats=1")
 
@@ -20,9 +20,7 @@ LIMITS = ("-max_len=4096", "-timeout=20", "-rss_limit_mb=1024", "-print_final_st
 def built(folder: Path, name: str) -> Path:
     """Compile a harness over the application, with the board of the fuzzers below it."""
     sources = [
-        path.name
-        for path in sorted(folder.glob("hk_*.c"))
-        if path.name not in BOARD_FILES and not path.name.startswith("hk_virtual_")
+        path.name for path in sorted(folder.glob("hk_*.c")) if not path.name.startswith(BOARD_FILES)
     ]
     command = ["clang", "-g", "-O1", *SANITIZERS, "-isystem", "mavlink", "-o", name]
     done = subprocess.run(

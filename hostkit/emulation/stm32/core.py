@@ -182,7 +182,7 @@ class Core:
         return buffer.raw
 
     def paint(self) -> None:
-        """Fill the RAM with what tells unused stack, as a new supply voltage would with anything."""
+        """Fill the RAM with what tells unused stack; a new supply would with anything."""
         self.poke(RAM_START, bytes([PAINT]) * RAM_BYTES)
 
     def reset(self) -> None:

@@ -54,7 +54,7 @@ class Timeline(ctypes.Structure):
         return self.now / TICK_HZ
 
 
-class BusFault(EmulationError):
+class BusError(EmulationError):
     """An access that the bus refuses; the core takes it for a fault of the program."""
 
 
