@@ -5,6 +5,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from benchmarks.device_cost import cost_table
 from benchmarks.problems import SENSOR, steps
 from benchmarks.table import MISSING, Table
 from benchmarks.timing import ratio, seconds
@@ -45,6 +46,7 @@ def tables() -> Iterator[Table]:
         columns=("figure", "value", "remark"),
         rows=rows,
     )
+    yield cost_table(DESIGN)
 
 
 def models() -> Iterator[Row]:

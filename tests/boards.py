@@ -73,6 +73,16 @@ def changed(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new), encoding="ascii")
 
 
+def with_baud(folder: Path, baud: int) -> None:
+    """Let generated code send and receive at another rate."""
+    design = folder / "hk_design.h"
+    lines = design.read_text(encoding="ascii").splitlines()
+    found = [i for i, line in enumerate(lines) if line.startswith("#define HK_LINK_BAUD ")]
+    assert len(found) == 1
+    lines[found[0]] = f"#define HK_LINK_BAUD {baud}UL"
+    design.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
 def stimulus(samples: int = 300, code: FilterDesign | None = None, seed: int = 3) -> Stimulus:
     """Wild motion: every row differs from its neighbours, some axes saturate."""
     code = code or design()
@@ -175,4 +185,16 @@ def pico_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     require_or_skip(*PICO_TOOLS)
     folder = generated("rp2040", tmp_path_factory.mktemp("pico"))
     rp2040_board.build(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def stm32_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Generated code of the STM32F103 target, built."""
+    from hostkit.emulation import stm32_board
+
+    pytest.importorskip("unicorn")
+    require_or_skip("make", "arm-none-eabi-gcc", "gcc")
+    folder = generated("stm32f103", tmp_path_factory.mktemp("stm32"))
+    stm32_board.build(folder)
     return folder

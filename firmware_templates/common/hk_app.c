@@ -38,7 +38,8 @@ void hk_app_notice(hk_app_t *app, hk_notice_t notice)
 /* The heartbeat tells a change at once. */
 static void tell_status(hk_app_t *app)
 {
-    const uint8_t status = app->calibration.running && app->sensor_status == MAV_STATE_ACTIVE
+    const bool calibrating = app->calibration.running && app->sensor_status == MAV_STATE_ACTIVE;
+    const uint8_t status = calibrating || app->sensor.state == HK_MPU6050_TEST
                                ? MAV_STATE_CALIBRATING
                                : app->sensor_status;
 
@@ -85,6 +86,16 @@ static void calibrate_with(hk_app_t *app, const hk_mpu6050_sample_t *sample)
         == HK_CALIBRATION_DONE) {
         use_calibration(app, gyro_count);
     }
+}
+
+/* --- Self-test ------------------------------------------------------------------------------ */
+
+static void end_self_test(hk_app_t *app)
+{
+    hk_command_end(app, HK_LATE_SELF_TEST,
+                   app->sensor.self_test == HK_SELF_TEST_PASSED ? MAV_RESULT_ACCEPTED
+                                                                : MAV_RESULT_FAILED);
+    hk_app_notice(app, HK_NOTICE_SELF_TEST);
 }
 
 /* --- Samples -------------------------------------------------------------------------------- */
@@ -152,6 +163,8 @@ static void poll_sensor(hk_app_t *app)
         hk_app_notice(app, HK_NOTICE_REFUSED);
         break;
     case HK_MPU6050_SELF_TESTED:
+        end_self_test(app);
+        break;
     case HK_MPU6050_NOTHING:
         break;
     }

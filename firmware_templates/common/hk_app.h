@@ -72,6 +72,7 @@ typedef struct {
     uint32_t samples;      /* since start */
     uint32_t changed_us;   /* when a parameter was set last */
     uint32_t listed_us;    /* when the list of parameters went on last */
+    uint32_t test_us;      /* when a self-test was asked for */
     uint32_t reboot_us;    /* when a reboot was asked for */
     uint8_t announce;      /* one bit for each parameter whose value is to be told */
     uint8_t list_place;    /* the next one of the list; HK_NO_PARAMETER if nobody asks for it */

@@ -10,7 +10,9 @@
 /* Time for the answer to leave, and for a save that is under way. */
 #define HK_REBOOT_US       UINT32_C(100000)
 #define HK_REBOOT_LIMIT_US UINT32_C(3000000)
-#define HK_INTERVAL_MAX_US 1e9f
+#define HK_TEST_LIMIT_US   (UINT32_C(5000000) + 300U * HK_PERIOD_US)
+
+#define HK_INTERVAL_MAX_US  1e9f
 #define HK_HEARTBEAT_MAX_US 2e6f
 
 static void acknowledge(hk_app_t *app, uint16_t command, uint8_t result,
@@ -135,6 +137,18 @@ static uint8_t reboot(hk_app_t *app, float what)
     return MAV_RESULT_ACCEPTED;
 }
 
+static uint8_t test(hk_app_t *app)
+{
+    if (app->sensor_status != MAV_STATE_ACTIVE || app->calibration.running
+        || app->late[HK_LATE_SELF_TEST].waited_for) {
+        return MAV_RESULT_TEMPORARILY_REJECTED;
+    }
+    app->sensor.self_test = HK_SELF_TEST_NONE;
+    app->test_us = (uint32_t)app->now_us;
+    hk_mpu6050_request_self_test(&app->sensor);
+    return begin_late(app, HK_LATE_SELF_TEST);
+}
+
 static uint8_t carry_out(hk_app_t *app, const mavlink_command_long_t *command)
 {
     switch (command->command) {
@@ -148,6 +162,8 @@ static uint8_t carry_out(hk_app_t *app, const mavlink_command_long_t *command)
         return store(app, command->param1);
     case MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN:
         return reboot(app, command->param1);
+    case MAV_CMD_USER_1:
+        return test(app);
     default:
         return MAV_RESULT_UNSUPPORTED;
     }
@@ -182,6 +198,18 @@ static void answer_late(hk_app_t *app)
     }
 }
 
+/* A sensor that fails in the middle of its test ends it without a result. */
+static void end_test_in_time(hk_app_t *app)
+{
+    const hk_late_answer_t *late = &app->late[HK_LATE_SELF_TEST];
+
+    if (late->waited_for && late->result == MAV_RESULT_IN_PROGRESS
+        && (uint32_t)app->now_us - app->test_us >= HK_TEST_LIMIT_US) {
+        hk_command_end(app, HK_LATE_SELF_TEST, MAV_RESULT_FAILED);
+        hk_app_notice(app, HK_NOTICE_SELF_TEST);
+    }
+}
+
 /* What has been set is saved before, unless that does not end. */
 static void reboot_in_time(hk_app_t *app)
 {
@@ -199,6 +227,7 @@ static void reboot_in_time(hk_app_t *app)
 
 void hk_command_poll(hk_app_t *app)
 {
+    end_test_in_time(app);
     answer_late(app);
     if (app->rebooting) {
         reboot_in_time(app);

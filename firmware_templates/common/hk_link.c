@@ -1,4 +1,4 @@
-/* MAVLink 2 frames: see the header. The layout is that of https://mavlink.io/en/guide/serialization.html:
+/* MAVLink 2 frames: see the header. The layout is that of "Packet Serialization" in MAVLink's guide:
  * magic, payload length, two sets of flags, sequence number, system, component, identity in three
  * bytes, payload without the zeros at its end, checksum. */
 #include "hk_link.h"
@@ -6,6 +6,10 @@
 #include "hk_crc.h"
 #include "hk_design.h"
 #include "hk_hal.h"
+
+#if HK_SIGNING
+#error "messages are not signed yet: generate without signing"
+#endif
 
 #define HK_HEADER_BYTES 10U
 

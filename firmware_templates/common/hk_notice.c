@@ -93,6 +93,25 @@ static void put_refusal(hk_app_t *app, hk_line_t *line)
     }
 }
 
+static const char *test_result(hk_self_test_result_t result)
+{
+    switch (result) {
+    case HK_SELF_TEST_PASSED:
+        return HK_TEXT("passed");
+    case HK_SELF_TEST_FAILED:
+        return HK_TEXT("failed");
+    case HK_SELF_TEST_NO_TRIM:
+        return HK_TEXT("has no factory figures");
+    case HK_SELF_TEST_MOVED:
+        return HK_TEXT("failed: it moves");
+    case HK_SELF_TEST_VARIANT:
+        return HK_TEXT("is not known of this part");
+    case HK_SELF_TEST_NONE:
+        break;
+    }
+    return HK_TEXT("broke off");
+}
+
 static uint8_t severity_of_notice(hk_notice_t notice)
 {
     switch (notice) {
@@ -130,6 +149,10 @@ static bool tell_notice(hk_app_t *app, hk_notice_t notice)
         break;
     case HK_NOTICE_STORE_FAILED:
         hk_line_put(&line, HK_TEXT("Parameters cannot be stored"));
+        break;
+    case HK_NOTICE_SELF_TEST:
+        hk_line_put(&line, HK_TEXT("Self-test "));
+        hk_line_put(&line, test_result(app->sensor.self_test));
         break;
     default:
         break;

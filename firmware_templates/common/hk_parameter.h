@@ -11,7 +11,9 @@
 #include "hk_design.h"
 #include "hk_filter.h"
 
-#define HK_PARAMETERS (3U + 2U * HK_DESIGN_AXES)
+/* Those that are not the filter's come first. */
+#define HK_OWN_PARAMETERS 2U
+#define HK_PARAMETERS     (HK_OWN_PARAMETERS + 1U + 2U * HK_DESIGN_AXES)
 #define HK_NAME_BYTES 16U /* of a name; one of full length has no zero behind it */
 #define HK_NO_PARAMETER 0xFFU
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "hk_command.h"
+#include "hk_hal.h"
 #include "hk_telemetry.h"
 
 /* Memory wears out: it is written when nobody has changed anything for a while. */
@@ -17,6 +18,8 @@
 
 #define HK_ALL_PARAMETERS ((uint8_t)((1U << HK_PARAMETERS) - 1U))
 typedef char hk_parameters_fit_mask[HK_PARAMETERS <= 8U ? 1 : -1];
+typedef char hk_changes_can_be_told_at_once
+    [(HK_PARAMETERS - HK_OWN_PARAMETERS) * (HK_VALUE_BYTES + HK_FRAME_OVERHEAD) < 255U ? 1 : -1];
 
 static void take_over(hk_app_t *app)
 {
@@ -116,23 +119,44 @@ bool hk_settings_calibrate(hk_app_t *app, const float gyro_count[3])
     return true;
 }
 
-/* Tell all that has changed at once, and put it to use. */
+static bool is_announced(const hk_app_t *app, uint8_t place)
+{
+    return (app->announce & (1U << place)) != 0U;
+}
+
+/* Those that the filter does not use, one after the other. Returns whether all have been told. */
+static bool announce_own(hk_app_t *app)
+{
+    uint8_t place;
+
+    for (place = 0U; place < HK_OWN_PARAMETERS; place++) {
+        if (is_announced(app, place)) {
+            if (!hk_telemetry_parameter(app, place)) {
+                return false;
+            }
+            app->announce = (uint8_t)(app->announce & ~(1U << place));
+        }
+    }
+    return true;
+}
+
+/* Tell all that has changed of the filter at once, and put it to use. */
 static void announce(hk_app_t *app)
 {
     const bool sample_waits = (app->stream.due & (1U << HK_STREAM_TILT_SAMPLE)) != 0U;
     uint8_t needed = 0U;
     uint8_t place;
 
-    for (place = 0U; place < HK_PARAMETERS; place++) {
-        if ((app->announce & (1U << place)) != 0U) {
+    for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
+        if (is_announced(app, place)) {
             needed = (uint8_t)(needed + (HK_VALUE_BYTES + HK_FRAME_OVERHEAD));
         }
     }
-    if (sample_waits || !hk_link_has_room((uint8_t)(needed - HK_FRAME_OVERHEAD))) {
+    if (sample_waits || hk_hal_transmit_room() < needed) {
         return;
     }
-    for (place = 0U; place < HK_PARAMETERS; place++) {
-        if ((app->announce & (1U << place)) != 0U) {
+    for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
+        if (is_announced(app, place)) {
             (void)hk_telemetry_parameter(app, place);
         }
     }
@@ -178,7 +202,9 @@ static void keep(hk_app_t *app)
 void hk_settings_poll(hk_app_t *app)
 {
     if (app->announce != 0U) {
-        announce(app);
+        if (announce_own(app) && app->announce != 0U) {
+            announce(app);
+        }
     } else {
         go_on_listing(app);
     }

@@ -53,7 +53,7 @@ int32_t hk_integer_of(float value, const hk_factor_t *factor)
     hk_wide_t size;
     int16_t shift;
 
-    memcpy(&bits, &value, sizeof bits);
+    (void)memcpy(&bits, &value, sizeof bits);
     shift = (int16_t)(190 - exponent_of(factor) - (int16_t)((bits >> 23) & 0xFFU));
     size = product(((bits & (HK_HIDDEN_BIT - 1U)) | HK_HIDDEN_BIT) << 8, factor);
     if (shift > 64) {
@@ -90,6 +90,6 @@ float hk_float_of(int32_t raw, const hk_factor_t *factor)
     if (raw < 0) {
         bits |= HK_TOP_BIT;
     }
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }

@@ -316,7 +316,10 @@ void hk_hal_idle(void)
         until = board.now_ns + HK_TICK_NS;
     }
     if (until > hk_host_link_next_ns()) {
-        until = hk_host_link_next_ns() > board.now_ns ? hk_host_link_next_ns() : board.now_ns;
+        until = hk_host_link_next_ns();
+    }
+    if (until < board.now_ns + HK_POLL_NS) {
+        until = board.now_ns + HK_POLL_NS; /* a byte that waits does not hold the time up */
     }
     if (board.options.realtime && !hk_host_link_flush()) {
         board.ended = true; /* nobody reads any more */

@@ -69,6 +69,11 @@ bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
     return true;
 }
 
+bool hk_uart_quiet(void)
+{
+    return to_send.tail == to_send.head && (HK_REG(HK_UART0_FR) & HK_UART_BUSY) == 0U;
+}
+
 /* --- Receiving ------------------------------------------------------------------------------ */
 
 /* Empty the receiver; damaged bytes and those that find no room are lost. */

@@ -27,9 +27,7 @@ def loader_checksum(environment) -> Path:
     source = Path(environment.subst("$PROJECT_DIR")) / "hk_boot2_rp2040.S"
     assembled, binary = folder / "hk_boot2.o", folder / "hk_boot2.bin"
     run = {"check": True, "env": environment["ENV"]}
-    subprocess.run(
-        ["arm-none-eabi-gcc", *CPU, "-c", "-o", str(assembled), str(source)], **run
-    )
+    subprocess.run(["arm-none-eabi-gcc", *CPU, "-c", "-o", str(assembled), str(source)], **run)
     subprocess.run(
         ["arm-none-eabi-objcopy", "-O", "binary", "-j", ".boot2", str(assembled), str(binary)],
         **run,

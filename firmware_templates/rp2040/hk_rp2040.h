@@ -137,6 +137,7 @@
 #define HK_UART0_IMSC        UINT32_C(0x40034038)
 #define HK_UART0_ICR         UINT32_C(0x40034044)
 #define HK_UART_BAD          (UINT32_C(7) << 8) /* of a byte: framing, parity, break */
+#define HK_UART_BUSY         HK_BIT(3)
 #define HK_UART_RX_EMPTY     HK_BIT(4)
 #define HK_UART_TX_FULL      HK_BIT(5)
 #define HK_UART_8_BITS       (UINT32_C(3) << 5)

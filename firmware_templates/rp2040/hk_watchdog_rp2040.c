@@ -1,7 +1,9 @@
 /* The watchdog of an RP2040, and why the chip was reset. */
 #include "hk_watchdog_rp2040.h"
 
+#include "hk_clock_rp2040.h"
 #include "hk_hal.h"
+#include "hk_link_rp2040.h"
 #include "hk_rp2040.h"
 
 #define HK_WATCHDOG_US UINT32_C(1500000)
@@ -54,8 +56,15 @@ void hk_hal_watchdog_feed(void)
     HK_REG(HK_WATCHDOG_LOAD) = HK_WATCHDOG_COUNTS;
 }
 
+/* What is queued for the link leaves first, if it does so in time. */
+#define HK_FAREWELL_US UINT32_C(60000)
+
 void hk_hal_reboot(void)
 {
+    const uint32_t since_us = hk_hal_time_us();
+
+    while (!hk_uart_quiet() && !hk_passed(since_us, HK_FAREWELL_US)) {
+    }
     HK_REG(HK_WATCHDOG_SCRATCH1) = HK_MARK_REBOOT;
     HK_SET(HK_WATCHDOG_CTRL) = HK_WATCHDOG_TRIGGER;
     for (;;) {

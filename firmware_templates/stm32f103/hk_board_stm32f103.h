@@ -18,6 +18,7 @@ void hk_board_configure_low_pin(uint32_t pin, uint32_t mode);
 /* The link, which needs its clock. */
 void hk_board_start_link(void);
 bool hk_board_has_received(void);
+bool hk_board_has_sent(void);
 
 /* Once after every start: why it was; and the watchdog, which nothing stops any more. */
 void hk_board_find_reset_cause(void);

@@ -136,8 +136,9 @@ static bool receive_more(uint8_t *bytes, uint8_t count)
 static bool i2c_receive(uint8_t address, uint8_t *bytes, uint8_t count)
 {
     const uint32_t acknowledge = count == 2U ? I2C_CR1_ACK | I2C_CR1_POS : I2C_CR1_ACK;
+    const uint8_t reads = (uint8_t)(((uint32_t)address << 1) | 1U);
 
-    if (count == 0U || !i2c_start((uint8_t)((address << 1) | 1U), count == 1U ? 0U : acknowledge)) {
+    if (count == 0U || !i2c_start(reads, count == 1U ? 0U : acknowledge)) {
         return false;
     }
     if (count == 1U) {

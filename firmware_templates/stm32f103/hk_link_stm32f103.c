@@ -84,6 +84,11 @@ bool hk_board_has_received(void)
     return received.head != received.tail;
 }
 
+bool hk_board_has_sent(void)
+{
+    return sent.head == sent.tail && (USART1_SR & USART_SR_TC) != 0U;
+}
+
 bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
 {
     uint8_t head = sent.head;

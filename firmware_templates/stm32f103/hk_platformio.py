@@ -1,4 +1,4 @@
-"""What platformio.ini cannot say of linking: no start-up files but ours, and the small C library."""
+"""What platformio.ini cannot say of linking: only our start-up code, and the small C library."""
 
 from SCons.Script import DefaultEnvironment
 

@@ -66,6 +66,7 @@
 #define IWDG_KR  HK_MMIO(0x40003000)
 #define IWDG_PR  HK_MMIO(0x40003004)
 #define IWDG_RLR HK_MMIO(0x40003008)
+#define IWDG_SR  HK_MMIO(0x4000300C)
 
 #define IWDG_KR_RELOAD UINT32_C(0xAAAA)
 #define IWDG_KR_UNLOCK UINT32_C(0x5555)
@@ -155,6 +156,7 @@
 #define USART_SR_FE      HK_BIT(1)
 #define USART_SR_ORE     HK_BIT(3)
 #define USART_SR_RXNE    HK_BIT(5)
+#define USART_SR_TC      HK_BIT(6)
 #define USART_SR_TXE     HK_BIT(7)
 #define USART_CR1_RE     HK_BIT(2)
 #define USART_CR1_TE     HK_BIT(3)

@@ -43,6 +43,13 @@ bool hk_hal_store_busy(void)
     return (FLASH_SR & FLASH_SR_BSY) != 0U;
 }
 
+/* The busy flag comes a clock after what raises it; a part that does not make the core wait, as some
+ * compatible ones, would be asked too early. */
+static void settle(void)
+{
+    __asm__ volatile("dsb\n\tnop" : : : "memory");
+}
+
 /* A key out of turn would lock the flash until the next reset. */
 static void unlock(void)
 {
@@ -62,12 +69,14 @@ void hk_hal_store_erase(uint8_t slot)
     FLASH_CR = FLASH_CR_PER;
     FLASH_AR = writer.place;
     FLASH_CR = FLASH_CR_PER | FLASH_CR_STRT;
+    settle();
 }
 
 static void program(uint8_t second)
 {
     FLASH_CR = FLASH_CR_PG;
     *(volatile uint16_t *)(uintptr_t)writer.place = (uint16_t)(writer.first | (second << 8));
+    settle();
     writer.place += 2U;
     writer.half = false;
 }

@@ -25,6 +25,7 @@ COMMANDS = {
     "evaluate": "Score a design on recordings.",
     "generate": "Render a design to C or VHDL.",
     "build": "Compile or analyse generated code.",
+    "flash": "Load generated code into a board.",
     "emulate": "Run the generated code on an emulated board or simulator.",
     "monitor": "Validate a live device against the models.",
     "reproduce": "The tilt paper's table and figures beside ours.",

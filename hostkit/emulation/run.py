@@ -8,7 +8,14 @@ from typing import Protocol
 import numpy as np
 
 from hostkit.design_file import digest
-from hostkit.emulation import avr_board, ghdl, host_board, rp2040_board, stm32_board
+from hostkit.emulation import (
+    avr_board,
+    ghdl,
+    host_board,
+    linux_board,
+    rp2040_board,
+    stm32_board,
+)
 from hostkit.emulation.board import (
     BoardRun,
     BuildResult,
@@ -67,6 +74,7 @@ BOARDS: dict[str, Board] = {
     "atmega328p": avr_board,
     "rp2040": rp2040_board,
     "stm32f103": stm32_board,
+    "linux": linux_board,
 }
 """Emulated boards of the microcontroller targets."""
 

@@ -12,6 +12,7 @@ from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.filter_context import FilterContext, filter_context
+from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
@@ -142,6 +143,7 @@ class RenderContext:
     design: DesignContext
     spec: FixedPointSpec
     filter: FilterContext
+    real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
     root_fraction_bits: int
@@ -181,6 +183,7 @@ def render_context(
         design=_design_context(design),
         spec=spec,
         filter=filter_context(spec, design.rate_hz),
+        real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
@@ -209,7 +212,7 @@ def _design_context(design: FilterDesign) -> DesignContext:
 
 
 def _version_number(version: str) -> int:
-    """Return a version as AUTOPILOT_VERSION has it: a byte each for major, minor, patch and kind."""
+    """Return a version as AUTOPILOT_VERSION has it: bytes of major, minor, patch and kind."""
     parts = [int(part) for part in re.findall(r"\d+", version)[:3]]
     return int.from_bytes(bytes([*parts, 0, 0, 0, 0][:4]), "big")
 

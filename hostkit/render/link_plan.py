@@ -101,11 +101,6 @@ class LinkPlan:
             f"({USABLE_PERCENT} % of {self.baud} baud): {parts}"
         )
 
-    @property
-    def attitude_every(self) -> int:
-        """With every how-many-th sample ATTITUDE goes out."""
-        return self.every("ATTITUDE")
-
     def every(self, name: str) -> int:
         """Return with which samples a message goes out: every so many-th; 0 if with none."""
         return next(m.every for m in self.messages if m.name == name)

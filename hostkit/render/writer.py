@@ -36,7 +36,7 @@ def render_target(
     env = environment(root)
     names = {field.name: getattr(context, field.name) for field in fields(RenderContext)}
     files = []
-    for folder in (*target.folders, design.filter):
+    for folder in (*target.folders, _filter_folder(design, target, options)):
         for path in sorted(p for p in (root / folder).rglob("*") if p.is_file()):
             template = path.relative_to(root).as_posix()
             output = path.relative_to(root / folder).as_posix()
@@ -48,6 +48,12 @@ def render_target(
             else:
                 files.append(GeneratedFile(path=output, content=path.read_text(encoding="ascii")))
     return _sorted_unique(files)
+
+
+def _filter_folder(design: FilterDesign, target: Target, options: FirmwareOptions) -> str:
+    """Return the folder of the filter in the arithmetic that was asked for."""
+    in_float = target.kind == "mcu" and options.arithmetic == "float"
+    return f"{design.filter}_float" if in_float else design.filter
 
 
 def generate(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from hostkit.targets.uart import UartClock
+from hostkit.targets.uart import FixedRates, UartClock
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,5 +33,5 @@ class Target:
     folders: tuple[str, ...]
     clock_hz: int = 0
     baud: int = 0
-    uart: UartClock | None = None
+    uart: UartClock | FixedRates | None = None
     arduino: bool = False

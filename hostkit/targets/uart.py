@@ -52,3 +52,32 @@ class UartClock:
         """Return the few standard rates nearest to `baud` that are made, ascending."""
         by_distance = sorted(self.standard(), key=lambda rate: abs(math.log(rate / baud)))
         return tuple(sorted(by_distance[:SUGGESTED]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixedRates:
+    """A port that knows some rates, bit/s, ascending, and makes them exactly."""
+
+    rates: tuple[int, ...]
+    tolerance: float = 0.0
+
+    def made(self, baud: int) -> float:
+        """Return the rate that is nearest to `baud`, bit/s."""
+        return min(self.rates, key=lambda rate: abs(math.log(rate / baud)))
+
+    def error(self, baud: int) -> float:
+        """Return the relative error of the rate that is nearest to `baud`."""
+        return self.made(baud) / baud - 1.0
+
+    def makes(self, baud: int) -> bool:
+        """Tell whether it knows a rate."""
+        return baud in self.rates
+
+    def standard(self) -> tuple[int, ...]:
+        """Return all it knows."""
+        return self.rates
+
+    def near(self, baud: int) -> tuple[int, ...]:
+        """Return the few rates nearest to `baud`, ascending."""
+        by_distance = sorted(self.rates, key=lambda rate: abs(math.log(rate / baud)))
+        return tuple(sorted(by_distance[:SUGGESTED]))

@@ -1,3 +1,3 @@
-from boards import avr_folder, host_folder, pico_folder
+from boards import avr_folder, host_folder, pico_folder, stm32_folder
 
-__all__ = ["avr_folder", "host_folder", "pico_folder"]
+__all__ = ["avr_folder", "host_folder", "pico_folder", "stm32_folder"]

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from boards import Collector, own_main, stimulus
+from boards import Collector, own_main, stimulus, with_baud
 
 from hostkit.emulation import avr_board
 from hostkit.emulation.board import BoardRun, LinkInput
@@ -88,6 +88,14 @@ def test_the_part_keeps_three_bytes_while_nobody_takes_them(
     assert heard(folder, (0.01, b"abcdef"), (0.3, b"on")).stream == b"abcdef"[:PART_BYTES] + b"on"
 
 
+def test_sending_leaves_a_byte_alone_that_waits_to_be_taken(
+    avr_folder: Path, tmp_path: Path
+) -> None:
+    late = "byte = 33U; cli(); wait_until(20000U);" + ECHO + "; sei()"
+    folder = program(avr_folder, tmp_path / "code", begin=late)
+    assert sorted(heard(folder, (0.01, b"a")).stream) == sorted(b"!a")
+
+
 def test_bytes_before_the_receiver_is_on_are_lost(avr_folder: Path, tmp_path: Path) -> None:
     folder = program(avr_folder, tmp_path / "code", begin="(void)0")
     text = (folder / "main.c").read_text(encoding="ascii")
@@ -146,14 +154,7 @@ def test_served_bytes_are_received(avr_folder: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("baud", [57600, 1_000_000])
 def test_other_baud_rates_are_received(avr_folder: Path, tmp_path: Path, baud: int) -> None:
     folder = program(avr_folder, tmp_path / "code")
-    design = folder / "hk_design.h"
-    text = design.read_text(encoding="ascii")
-    lines = [
-        f"#define HK_LINK_BAUD {baud}UL" if line.startswith("#define HK_LINK_BAUD ") else line
-        for line in text.splitlines()
-    ]
-    assert "\n".join(lines) != text.rstrip("\n")
-    design.write_text("\n".join(lines) + "\n", encoding="ascii")
+    with_baud(folder, baud)
     avr_board.build(folder)
     data = bytes(range(100))
     assert heard(folder, (0.1, data)).stream == data

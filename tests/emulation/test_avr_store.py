@@ -1,5 +1,6 @@
 """The store of the ATmega328P on its EEPROM, by small programs on its hardware layer."""
 
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -91,6 +92,29 @@ def test_bytes_behind_a_slot_go_nowhere(avr_folder: Path, tmp_path: Path) -> Non
     assert run(avr_folder, tmp_path / "code", "replace(0U, 130U)").store[SLOT_BYTES:] == (
         ERASED * (EEPROM_BYTES - SLOT_BYTES)
     )
+
+
+def test_putting_a_byte_takes_no_time_and_the_store_is_busy_meanwhile(
+    avr_folder: Path, tmp_path: Path
+) -> None:
+    """The first byte changes, the second does not."""
+    work = """
+    uint32_t times_us[4];
+    hk_hal_store_erase(0U);
+    times_us[0] = hk_hal_time_us();
+    hk_hal_store_put(1U);
+    times_us[1] = hk_hal_time_us();
+    wait();
+    times_us[2] = hk_hal_time_us();
+    hk_hal_store_put(0xFFU);
+    wait();
+    times_us[3] = hk_hal_time_us();
+    (void)hk_hal_transmit((const uint8_t *)times_us, sizeof times_us)"""
+    found = run(avr_folder, tmp_path / "code", work)
+    begun, put, written, skipped = struct.unpack("<4I", found.stream)
+    assert put - begun < 20
+    assert 3000 < written - put < 4000
+    assert skipped - written < 40
 
 
 def test_reading_waits_for_the_byte_that_is_written(avr_folder: Path, tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def test_a_looping_stimulus_is_not_run(host_folder: Path) -> None:
 
 def test_a_compiler_error_is_the_message(host_folder: Path, tmp_path: Path) -> None:
     folder = copied(host_folder, tmp_path / "code")
-    changed(folder / "hk_app.c", "app->sequence = 0U;", "app->sequence = nothing;")
+    changed(folder / "hk_app.c", "app->system_status = status;", "app->system_status = nothing;")
     with pytest.raises(BuildError, match=r"hk_app\.c:\d+:\d+: error: .*nothing"):
         host_board.build(folder)
 
@@ -92,9 +92,9 @@ def test_a_crash_is_reported_with_its_reason(host_folder: Path, tmp_path: Path) 
     folder = copied(host_folder, tmp_path / "code")
     changed(
         folder / "hk_app.c",
-        "facts.sequence = app->sequence++;",
-        "facts.sequence = app->sequence++;\n    if (app->sequence > 5U) {\n"
-        "        *(volatile int *)(uintptr_t)app->sequence = 0;\n    }",
+        "latest->sequence = app->samples++;",
+        "latest->sequence = app->samples++;\n    if (app->samples > 5U) {\n"
+        "        *(volatile int *)(uintptr_t)app->samples = 0;\n    }",
     )
     host_board.build(folder, sanitize=True)
     with pytest.raises(

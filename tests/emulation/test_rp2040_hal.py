@@ -79,6 +79,7 @@ int main(void)
     turns++;
     END
     for (;;) {
+        hk_hal_idle();
     }
 }
 """
@@ -102,10 +103,12 @@ int main(void)
     (void)hk_hal_transmit(&byte, 1U);
     WORD = 0x12345678U;
     while (hk_hal_time_us() < 100000U) {
+        hk_hal_idle();
     }
     (void)hk_hal_i2c_write(0x68U, wake, sizeof wake);
     hk_hal_store_erase(0U);
     for (;;) {
+        hk_hal_idle();
     }
 }
 """
@@ -239,7 +242,7 @@ def test_an_unexpected_exception_starts_the_board_over(pico_folder: Path, tmp_pa
 def test_application_that_hangs_is_started_over(pico_folder: Path, tmp_path: Path) -> None:
     folder = tmp_path / "code"
     shutil.copytree(pico_folder, folder)
-    changed(folder / "main.c", "hk_hal_watchdog_feed();", "")
+    changed(folder / "hk_app.c", "    hk_hal_watchdog_feed();\n", "")
     rp2040_board.build(folder)
     heard = rp2040_board.run(folder, stimulus(400))
     assert dict(heard.faults)["resets"] == 3  # 1.5 s each, of which samples come in 1.25
@@ -266,3 +269,26 @@ def test_what_outlives_a_reset(
     heard = rp2040_board.run(folder, replace(stimulus(3), power_cut_after=cut))
     assert tuple(heard.stream[:3]) == (POWER, 0, 0x40)
     assert tuple(heard.stream[3:6]) == second
+
+
+def test_what_is_queued_leaves_before_a_restart(pico_folder: Path, tmp_path: Path) -> None:
+    source = """
+#include "hk_hal.h"
+int main(void)
+{
+    uint8_t bytes[200] = {0U};
+    hk_hal_init();
+    if (hk_hal_reset_cause() == HK_RESET_POWER) {
+        bytes[199] = 7U;
+        (void)hk_hal_transmit(bytes, sizeof bytes);
+        hk_hal_reboot();
+    }
+    for (;;) {
+        hk_hal_watchdog_feed();
+        hk_hal_idle();
+    }
+}
+"""
+    heard = run(firmware(pico_folder, tmp_path / "code", source))
+    assert heard.stream == bytes(199) + b"\x07"
+    assert dict(heard.faults)["resets"] == 1

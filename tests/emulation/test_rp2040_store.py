@@ -216,8 +216,7 @@ SAVES = """
 def saving(folder: Path, code: FilterDesign) -> Path:
     """The application, which changes the store once, 0.8 s after it has started."""
     generated("rp2040", folder, code)
-    changed(folder / "main.c", "        hk_hal_watchdog_feed();\n",
-            "        hk_hal_watchdog_feed();\n" + SAVES)  # fmt: skip
+    changed(folder / "main.c", "    for (;;) {\n", "    for (;;) {" + SAVES)
     changed(folder / "main.c", "    static hk_app_t app;\n",
             "    static hk_app_t app;\n    bool saved = false;\n")  # fmt: skip
     rp2040_board.build(folder)
@@ -243,7 +242,8 @@ def test_a_change_of_the_store_costs_samples_and_no_more(
     rows = {tuple(row): i for i, row in enumerate(expected_counts(feels, code).accel.tolist())}
     played = [rows[tuple(sample.accel)] for sample in heard.samples]
     assert done.store[:2] == b"\x42\xff"
-    assert [b - a for a, b in pairwise(played) if b - a != 1] == [gap_rows]
+    (gap,) = (b - a for a, b in pairwise(played) if b - a != 1)
+    assert gap_rows - 1 <= gap <= gap_rows
     assert (played[0], played[-1]) == (0, len(feels) - 1)
     assert sum(sample.flags & RESTARTED for sample in heard.samples) == 1 + restarts
     assert [text.text for text in heard.of("STATUSTEXT")] == texts
@@ -263,7 +263,14 @@ def test_the_application_starts_anew_after_the_supply_has_failed(tmp_path: Path)
     assert done.store[:2] == b"\x42\xff"
 
 
+LATE = """
+    while (hk_hal_time_us() < 1480000U) {
+        hk_hal_idle();
+    }
+"""
+
+
 def test_a_change_begins_with_a_fed_watchdog(writer: Path, tmp_path: Path) -> None:
-    waits = "    while (hk_hal_time_us() < 1480000U) {\n    }\n    if (first != 0x80U) {"
-    folder = rebuilt(writer, tmp_path / "code", "main.c", "    if (first != 0x80U) {", waits)
+    begin = "    if (first != 0x80U) {"
+    folder = rebuilt(writer, tmp_path / "code", "main.c", begin, LATE + begin)
     assert "resets" not in dict(run(folder).faults)

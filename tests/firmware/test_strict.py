@@ -18,7 +18,7 @@ WARNINGS = (
     "-Wdouble-promotion",
     "-Werror",
 )
-BOARD_CODE = ("main.c", "hk_hal_host.c")
+BOARD_CODE = ("main.c", "hk_hal_host.c", "hk_host_link.c", "hk_host_store.c")
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])

@@ -27,9 +27,10 @@ def at_rest(roll_rad: float, pitch_rad: float, rate_rad_s: tuple[float, float, f
     )
 
 
-def test_nothing_but_the_four_messages(host_folder: Path) -> None:
+def test_nothing_but_what_is_planned(host_folder: Path) -> None:
     heard = hear(host_board.run(host_folder, stimulus(100)))
-    assert {frame.name for frame in heard.frames} == {"HEARTBEAT", "ATTITUDE", "TILT_SAMPLE"}
+    planned = {"HEARTBEAT", "SYS_STATUS", "ATTITUDE", "TILT_SAMPLE"}
+    assert {frame.name for frame in heard.frames} == planned
     assert {frame.source for frame in heard.frames} == {(1, 1)}
     assert len(heard.of("ATTITUDE")) == 50
     assert len(heard.of("TILT_SAMPLE")) == 100

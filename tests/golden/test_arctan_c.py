@@ -43,9 +43,11 @@ def expected() -> np.ndarray:
     return np.stack([angle, angle, length, turn, pitch, sines], axis=1)
 
 
-def answers(host_cc, folder: Path) -> np.ndarray:
+def answers(host_cc, folder: Path, divides: int) -> np.ndarray:
     harness = Path(__file__).with_name("arctan_main.c")
-    program = host_cc.build(folder / "arctan", f"-I{folder}", harness, folder / "hk_arctan.c")
+    source = folder / "hk_arctan.c"
+    way = f"-DHK_DIVIDES={divides}"
+    program = host_cc.build(folder / "arctan", way, f"-I{folder}", harness, source)
     return np.array(host_cc.run(program, CASES.tolist()), dtype=np.int64)
 
 
@@ -55,25 +57,28 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_c_equals_python(host_cc, folder: Path) -> None:
+@pytest.mark.parametrize("divides", [0, 1])
+def test_the_c_equals_python(host_cc, folder: Path, divides: int) -> None:
     wanted = expected()
     assert set(wanted[:, 3].tolist()) == set(range(64))
-    np.testing.assert_array_equal(answers(host_cc, folder), wanted)
+    np.testing.assert_array_equal(answers(host_cc, folder, divides), wanted)
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("divides", "old", "new"),
     [
-        (" 531488619", " 531488618"),
-        (" 105699", " 105700"),
-        ("HK_SLOPE_RAW    UINT16_C(41719)", "HK_SLOPE_RAW    UINT16_C(41718)"),
-        ("fine + 1U", "fine + 0U"),
-        ("y > x", "y >= x"),
-        ("if (y >= x)", "if (y > x)"),
-        ("y >> 8", "(y + 128U) >> 8"),
-        ("uint8_t)(bits >> 24) >> 6", "uint8_t)(bits >> 24) >> 7"),
+        (1, " 531488619", " 531488618"),
+        (1, " 105699", " 105700"),
+        (0, "HK_SLOPE_RAW    UINT16_C(41719)", "HK_SLOPE_RAW    UINT16_C(41718)"),
+        (0, "fine + 1U", "fine + 0U"),
+        (0, "    if (y > x)", "    if (y >= x)"),
+        (0, "        if (rest >= x)", "        if (rest > x)"),
+        (1, "rest >= x && *y != x", "rest > x && *y != x"),
+        (1, "quotient++", "quotient += 0U"),
+        (0, "y >> 8", "(y + 128U) >> 8"),
+        (1, "uint8_t)(bits >> 24) >> 6", "uint8_t)(bits >> 24) >> 7"),
     ],
 )
-def test_a_fault_is_found(host_cc, folder: Path, old: str, new: str) -> None:
+def test_a_fault_is_found(host_cc, folder: Path, divides: int, old: str, new: str) -> None:
     changed(folder / "hk_arctan.c", old, new)
-    assert (answers(host_cc, folder) != expected()).any()
+    assert (answers(host_cc, folder, divides) != expected()).any()

@@ -12,10 +12,14 @@ FIXED = Path(__file__).resolve().parents[2] / "firmware_templates" / "complement
 RAWS = (2**16, 2**16 + 1, 3 * 2**15, 2**17 - 2, 2**17 - 1)
 
 
-@pytest.fixture(scope="module")
-def program(host_cc, tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(scope="module", params=[0, 1], ids=["16-bit", "32-bit"])
+def program(
+    host_cc, tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
+) -> Path:
+    """Return the harness with the products of small processors, and with those of larger ones."""
     output = tmp_path_factory.mktemp("scale") / "scale"
-    return host_cc.build(output, f"-I{FIXED}", Path(__file__).with_name("scale_main.c"))
+    harness = Path(__file__).with_name("scale_main.c")
+    return host_cc.build(output, f"-DHK_LONG_PRODUCT={request.param}", f"-I{FIXED}", harness)
 
 
 def expected(cases: list[tuple[str, int, int, int]]) -> list[list[str]]:

@@ -62,10 +62,10 @@ def test_a_message_goes_out_with_every_so_many_th_sample(name: str, hz: float, e
 
 def test_the_plan_stands_in_the_header() -> None:
     text = header(dataclasses.replace(rates(RAW_IMU=10.0, ATTITUDE=0.0), baud=250_000))
-    assert "X(TILT_SAMPLE, 10000, 55) \\\n" in text
-    assert "X(ATTITUDE, 0, 40) \\\n" in text
-    assert "X(RAW_IMU, 100000, 41) \\\n" in text
-    assert "X(HEARTBEAT, 1000000, 21)\n" in text
+    assert "X(TILT_SAMPLE, UINT32_C(10000), 55U) \\\n" in text
+    assert "X(ATTITUDE, UINT32_C(0), 40U) \\\n" in text
+    assert "X(RAW_IMU, UINT32_C(100000), 41U) \\\n" in text
+    assert "X(HEARTBEAT, UINT32_C(1000000), 21U)\n" in text
     assert "#define HK_LINK_BAUD           250000\n" in text
     assert "#define HK_LINK_USABLE_BYTES_S 20000\n" in text
     assert f"{100 * 55 + 10 * 41 + 55 + 21} bytes/s" in text
@@ -140,6 +140,8 @@ def test_samples_at_a_rate_that_is_no_divisor_are_refused_with_the_nearest() -> 
         ("rp2040", 921600, None),
         ("atmega328p", 115200, None),
         ("host", 123456, None),
+        ("linux", 460800, None),
+        ("linux", 250000, r"makes 230400 of 250000 baud.* 230400, 460800"),
     ],
 )
 def test_baud_that_the_target_cannot_make_is_refused(target: str, baud: int, says) -> None:

@@ -10,7 +10,7 @@ FLOORS = (
     ("cli",),
     ("report",),
     ("monitor", "importers"),
-    ("validation",),
+    ("validation", "flashing"),
     ("emulation",),
     ("link",),
     ("render",),

@@ -1,7 +1,9 @@
 /* made by hostkit 0.1.0 from design 0099cab74159; do not edit; template complementary/hk_arctan.c.j2 */
 #include "hk_arctan.h"
 
-#include <stdbool.h>
+#include "hk_divide.h"
+#include "hk_fixed.h"
+
 #include <stddef.h>
 
 #define HK_GUARD_BITS   14
@@ -45,33 +47,58 @@ static const HK_FLASH uint32_t hk_stretches[64] = {
     86185, 88895, 91633, 94396, 97185, 99999, 102837, 105699
 };
 
+/* Binary digits of y / x for y <= x, 2^14 <= x < 2^31; *y becomes their remainder. All of them are
+ * ones where y equals x. At most 7 at a time where the processor divides. */
+#if HK_DIVIDES
+HK_INLINE uint16_t hk_digits(uint32_t *y, uint32_t x, uint8_t digits)
+{
+    /* A divisor that is too large by less than one of its units: the quotient is right or, with
+     * 2^(2 digits - 1) at most as large as x, one too small. */
+    uint32_t quotient = hk_divide(*y << 1, (x >> (digits - 1U)) + 1U);
+    uint32_t rest = (*y << digits) - quotient * x;
+
+    if (rest >= x && *y != x) {
+        quotient++;
+        rest -= x;
+    }
+    *y = rest;
+    return (uint16_t)quotient;
+}
+#else
+HK_INLINE uint16_t hk_digits(uint32_t *y, uint32_t x, uint8_t digits)
+{
+    uint32_t rest = *y;
+    uint16_t quotient = 0U;
+    uint8_t i;
+
+    for (i = 0U; i < digits; i++) {
+        rest <<= 1;
+        quotient = (uint16_t)(quotient << 1);
+        if (rest >= x) {
+            rest -= x;
+            quotient |= 1U;
+        }
+    }
+    *y = rest;
+    return quotient;
+}
+#endif
+
 /* Angle of (x, y) with 0 <= y <= x, 0 < x < 2^30. The first digits of y / x choose a turn, and what
  * they leave lies across the vector that is turned by it. The digits of that are the rest. */
 static uint32_t hk_octant(uint32_t y, uint32_t x, hk_length_t *length)
 {
     const uint32_t part = y >> 8;
-    uint32_t along;
-    uint16_t ratio = 0U;
-    uint8_t turn = 0U;
-    uint8_t i;
+    const uint8_t turn = (uint8_t)hk_digits(&y, x, HK_TURN_DIGITS);
+    const uint32_t along = x + part * (uint8_t)(turn << 2);
+    uint16_t ratio;
 
-    for (i = 0U; i < HK_TURN_DIGITS; i++) {
-        y <<= 1;
-        turn = (uint8_t)(turn << 1);
-        if (y >= x) {
-            y -= x;
-            turn |= 1U;
-        }
-    }
-    along = x + part * (uint8_t)(turn << 2);
-    for (i = 0U; i < HK_RATIO_DIGITS; i++) {
-        y <<= 1;
-        ratio = (uint16_t)(ratio << 1);
-        if (y >= along) {
-            y -= along;
-            ratio |= 1U;
-        }
-    }
+#if HK_DIVIDES
+    ratio = (uint16_t)(hk_digits(&y, along, HK_RATIO_DIGITS / 2) << (HK_RATIO_DIGITS / 2));
+    ratio |= hk_digits(&y, along, HK_RATIO_DIGITS / 2);
+#else
+    ratio = hk_digits(&y, along, HK_RATIO_DIGITS);
+#endif
     ratio = (uint16_t)(ratio << (16 - HK_RATIO_DIGITS)); /* unit 2^-22 */
     if (length != NULL) {
         const uint8_t fine = (uint8_t)(ratio >> 8);

@@ -2,9 +2,11 @@
 #include "hk_filter.h"
 
 #include "hk_arctan.h"
-#include "hk_fixed.h"
 
 #include <stddef.h>
+
+/* pi / 2^31: one unit of an angle in rad. */
+#define HK_RAD_PER_UNIT 0x1.921fb6p-30f
 
 /* Body axes from sensor axes; a count is widened first, because -(-32768) is no int16_t. */
 #define HK_BODY_X(count) ((int32_t)(count)[0])
@@ -23,20 +25,21 @@ void hk_filter_init(hk_filter_t *filter)
 {
     filter->angle[HK_ROLL] = 0;
     filter->angle[HK_PITCH] = 0;
-    filter->bias[HK_ROLL] = HK_BIAS_START_ROLL;
-    filter->bias[HK_PITCH] = HK_BIAS_START_PITCH;
+    filter->bias[HK_ROLL] = filter->settings.bias[HK_ROLL];
+    filter->bias[HK_PITCH] = filter->settings.bias[HK_PITCH];
     filter->primed = 0U;
 }
 
 /* Tilt from specific force, half turns. */
-static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
+static void hk_measure(const hk_filter_settings_t *settings, const int16_t accel_count[3],
+                       int32_t tilt[HK_ANGLES])
 {
     hk_length_t length;
 
     tilt[HK_ROLL] = hk_atan2(HK_BODY_Y(accel_count), HK_BODY_Z(accel_count), &length);
     tilt[HK_PITCH] = hk_atan2_length(-HK_BODY_X(accel_count), &length);
-    tilt[HK_ROLL] = hk_wrap_sub(tilt[HK_ROLL], HK_TILT_OFFSET_ROLL);
-    tilt[HK_PITCH] = hk_wrap_sub(tilt[HK_PITCH], HK_TILT_OFFSET_PITCH);
+    tilt[HK_ROLL] = hk_wrap_sub(tilt[HK_ROLL], settings->tilt_offset[HK_ROLL]);
+    tilt[HK_PITCH] = hk_wrap_sub(tilt[HK_PITCH], settings->tilt_offset[HK_PITCH]);
 }
 
 /* Whether the specific force is close enough to 1 g to say where up is. */
@@ -72,10 +75,10 @@ static int32_t hk_predict_pitch(const hk_filter_t *filter, const int16_t gyro_co
 }
 
 /* Correct a prediction with the wrapped difference to the measured tilt, and the bias with it. */
-static int32_t hk_correct(int32_t predicted, int32_t tilt, bool corrects, int32_t *bias)
+HK_INLINE int32_t hk_correct(const hk_coefficient_t *blend, int32_t predicted, int32_t tilt, bool corrects, int32_t *bias)
 {
     const int32_t innovation = corrects ? hk_wrap_sub(tilt, predicted) : 0;
-    const int32_t correction = hk_scale_angle(innovation, HK_BLEND_RAW, HK_BLEND_FRAC);
+    const int32_t correction = hk_scale_angle(innovation, blend->raw, blend->frac);
     const int32_t change =
         hk_scale_angle(innovation, HK_INTEGRAL_GAIN_RAW, HK_INTEGRAL_GAIN_FRAC);
 
@@ -90,15 +93,26 @@ bool hk_filter_update(hk_filter_t *filter, const int16_t accel_count[3],
     const bool load = filter->primed == 0U;
     const bool corrects = hk_corrects(accel_count);
 
-    hk_measure(accel_count, tilt);
+    hk_measure(&filter->settings, accel_count, tilt);
     filter->angle[HK_ROLL] =
         load ? tilt[HK_ROLL]
-             : hk_correct(hk_predict_roll(filter, gyro_count), tilt[HK_ROLL], corrects,
+             : hk_correct(&filter->settings.blend, hk_predict_roll(filter, gyro_count), tilt[HK_ROLL], corrects,
                           &filter->bias[HK_ROLL]);
     filter->angle[HK_PITCH] =
         load ? tilt[HK_PITCH]
-             : hk_correct(hk_predict_pitch(filter, gyro_count), tilt[HK_PITCH], corrects,
+             : hk_correct(&filter->settings.blend, hk_predict_pitch(filter, gyro_count), tilt[HK_PITCH], corrects,
                           &filter->bias[HK_PITCH]);
     filter->primed = 1U;
     return load;
+}
+
+void hk_filter_angles(const hk_filter_t *filter, int32_t angle[HK_ANGLES])
+{
+    angle[HK_ROLL] = filter->angle[HK_ROLL];
+    angle[HK_PITCH] = filter->angle[HK_PITCH];
+}
+
+float hk_filter_angle_rad(const hk_filter_t *filter, uint8_t axis)
+{
+    return (float)filter->angle[axis] * HK_RAD_PER_UNIT;
 }

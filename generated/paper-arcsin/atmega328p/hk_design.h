@@ -4,6 +4,7 @@
 
 /* The design that this firmware was made from: rate 20.0 Hz. */
 #define HK_VERSION       "0.1.0"
+#define HK_VERSION_NUMBER UINT32_C(65536) /* a byte each: major, minor, patch, kind */
 #define HK_DESIGN_DIGEST "975f50245cf2"
 #define HK_DESIGN_DIGEST_BYTES \
     { 0x97, 0x5F, 0x50, 0x24, 0x5C, 0xF2 }
@@ -34,6 +35,9 @@
 /* Weight of one count of angular rate in rad/s. */
 #define HK_RAD_S_PER_COUNT 0.0010652644360316954f
 
+/* Weight of one count of specific force in m/s^2. */
+#define HK_M_S2_PER_COUNT 0.0005985504150390625f
+
 /* Body axes x, y, z as signed sensor axes. */
 #define HK_BODY_X_SOURCE 0
 #define HK_BODY_X_SIGN   1
@@ -42,13 +46,37 @@
 #define HK_BODY_Z_SOURCE 2
 #define HK_BODY_Z_SIGN   1
 
-/* Telemetry. */
-#define HK_SYSTEM_ID      1U
-#define HK_COMPONENT_ID   1U
-#define HK_VEHICLE_TYPE   0U
-#define HK_AUTOPILOT      0U
-#define HK_LINK_BAUD      500000 /* bit/s; telemetry takes 1921 bytes/s */
-#define HK_HEARTBEAT_US   (UINT32_C(1000) * 1000U)
-#define HK_ATTITUDE_EVERY 1U
+/* Axes that the design has. */
+#define HK_DESIGN_ROLL  0
+#define HK_DESIGN_PITCH 1
+#define HK_DESIGN_AXES  ((unsigned)(HK_DESIGN_ROLL + HK_DESIGN_PITCH))
+
+/* Who the device is at first. */
+#define HK_DEFAULT_SYSTEM_ID 1U
+#define HK_COMPONENT_ID      1U
+#define HK_VEHICLE_TYPE      0U
+#define HK_AUTOPILOT         0U
+
+/* The link: bit/s, and bytes/s that telemetry may take of it. The messages below take
+ * 1976 bytes/s. */
+#define HK_LINK_BAUD           500000
+#define HK_LINK_USABLE_BYTES_S 40000
+
+/* X(message, interval in us, bytes of its frame at most) for every message that can be streamed, in
+ * the order in which they are sent; 0 is off until it is asked for. */
+#define HK_MESSAGE_PLAN(X) \
+    X(TILT_SAMPLE, UINT32_C(50000), 55U) \
+    X(ATTITUDE, UINT32_C(50000), 40U) \
+    X(SCALED_IMU, UINT32_C(0), 36U) \
+    X(RAW_IMU, UINT32_C(0), 41U) \
+    X(HIGHRES_IMU, UINT32_C(0), 75U) \
+    X(SYS_STATUS, UINT32_C(1000000), 55U) \
+    X(HEARTBEAT, UINT32_C(1000000), 21U)
+
+/* How it works. */
+#define HK_FLOAT              0 /* the filter computes in float */
+#define HK_FIFO               0 /* samples come out of the sensor's FIFO */
+#define HK_CALIBRATE_AT_START 0 /* the gyroscope's bias is measured after a start */
+#define HK_SIGNING            0 /* messages are signed */
 
 #endif

@@ -2,9 +2,11 @@
 #include "hk_filter.h"
 
 #include "hk_arctan.h"
-#include "hk_fixed.h"
 
 #include <stddef.h>
+
+/* pi / 2^31: one unit of an angle in rad. */
+#define HK_RAD_PER_UNIT 0x1.921fb6p-30f
 
 /* Body axes from sensor axes; a count is widened first, because -(-32768) is no int16_t. */
 #define HK_BODY_X(count) ((int32_t)(count)[0])
@@ -24,9 +26,11 @@ void hk_filter_init(hk_filter_t *filter)
 }
 
 /* Tilt from specific force, half turns. */
-static void hk_measure(const int16_t accel_count[3], int32_t tilt[HK_ANGLES])
+static void hk_measure(const hk_filter_settings_t *settings, const int16_t accel_count[3],
+                       int32_t tilt[HK_ANGLES])
 {
     tilt[HK_PITCH] = hk_arcsin(-HK_BODY_X(accel_count), INT32_C(16384));
+    tilt[HK_PITCH] = hk_wrap_sub(tilt[HK_PITCH], settings->tilt_offset[HK_PITCH]);
 }
 
 /* Predict pitch with the rate. */
@@ -34,15 +38,16 @@ static int32_t hk_predict_pitch(const hk_filter_t *filter, const int16_t gyro_co
 {
     const int32_t turn = hk_scale_count(HK_BODY_Y(gyro_count), HK_RATE_GAIN_PITCH_RAW,
                                         HK_RATE_GAIN_PITCH_FRAC);
+    const int32_t bias = filter->settings.bias[HK_PITCH];
 
-    return hk_wrap_add(filter->angle[HK_PITCH], turn);
+    return hk_wrap_add(filter->angle[HK_PITCH], hk_wrap_sub(turn, bias));
 }
 
 /* Correct a prediction with the wrapped difference to the measured tilt. */
-static int32_t hk_correct(int32_t predicted, int32_t tilt)
+HK_INLINE int32_t hk_correct(const hk_coefficient_t *blend, int32_t predicted, int32_t tilt)
 {
     const int32_t innovation = hk_wrap_sub(tilt, predicted);
-    const int32_t correction = hk_scale_angle(innovation, HK_BLEND_RAW, HK_BLEND_FRAC);
+    const int32_t correction = hk_scale_angle(innovation, blend->raw, blend->frac);
 
     return hk_wrap_add(predicted, correction);
 }
@@ -53,10 +58,21 @@ bool hk_filter_update(hk_filter_t *filter, const int16_t accel_count[3],
     int32_t tilt[HK_ANGLES] = {0, 0};
     const bool load = filter->primed == 0U;
 
-    hk_measure(accel_count, tilt);
+    hk_measure(&filter->settings, accel_count, tilt);
     filter->angle[HK_PITCH] =
         load ? tilt[HK_PITCH]
-             : hk_correct(hk_predict_pitch(filter, gyro_count), tilt[HK_PITCH]);
+             : hk_correct(&filter->settings.blend, hk_predict_pitch(filter, gyro_count), tilt[HK_PITCH]);
     filter->primed = 1U;
     return load;
+}
+
+void hk_filter_angles(const hk_filter_t *filter, int32_t angle[HK_ANGLES])
+{
+    angle[HK_ROLL] = filter->angle[HK_ROLL];
+    angle[HK_PITCH] = filter->angle[HK_PITCH];
+}
+
+float hk_filter_angle_rad(const hk_filter_t *filter, uint8_t axis)
+{
+    return (float)filter->angle[axis] * HK_RAD_PER_UNIT;
 }

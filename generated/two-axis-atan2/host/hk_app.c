@@ -1,14 +1,25 @@
 /* The application: see the header. */
 #include "hk_app.h"
 
-#include "hk_design.h"
-#include "hk_hal.h"
+#include <string.h>
 
-#define HK_HEX_DIGITS "0123456789ABCDEF"
+#include "hk_command.h"
+#include "hk_design.h"
+#include "hk_flash.h"
+#include "hk_hal.h"
+#include "hk_notice.h"
+#include "hk_protocol.h"
+#include "hk_settings.h"
+#include "hk_telemetry.h"
+
+#define HK_COUNT_LIMIT 32767
 
 static void advance_clock(hk_app_t *app)
 {
     app->now_us += (uint32_t)(hk_hal_time_us() - (uint32_t)app->now_us);
+    if (app->load.paused) {
+        app->load.asleep_us += (uint32_t)app->now_us - app->load.paused_us;
+    }
 }
 
 /* The full time of an event shortly before or after now. */
@@ -19,166 +30,119 @@ static uint64_t full_time_us(const hk_app_t *app, uint32_t event_us)
     return later_us <= INT32_MAX ? app->now_us + later_us : app->now_us - (0U - later_us);
 }
 
-static void set_status(hk_app_t *app, uint8_t system_status)
+void hk_app_notice(hk_app_t *app, hk_notice_t notice)
 {
-    if (app->system_status != system_status) {
-        app->system_status = system_status;
-        app->heartbeat_us = app->now_us; /* a change is told at once */
+    app->notices = (uint8_t)(app->notices | (1U << notice));
+}
+
+/* The heartbeat tells a change at once. */
+static void tell_status(hk_app_t *app)
+{
+    const bool calibrating = app->calibration.running && app->sensor_status == MAV_STATE_ACTIVE;
+    const uint8_t status = calibrating || app->sensor.state == HK_MPU6050_TEST
+                               ? MAV_STATE_CALIBRATING
+                               : app->sensor_status;
+
+    if (app->system_status != status) {
+        app->system_status = status;
+        hk_stream_request(&app->stream, HK_STREAM_HEARTBEAT);
     }
 }
 
-/* --- Texts ---------------------------------------------------------------------------------- */
+/* --- Calibration ---------------------------------------------------------------------------- */
 
-typedef struct {
-    char text[MAVLINK_MSG_STATUSTEXT_FIELD_TEXT_LEN + 1];
-    uint8_t length;
-} hk_line_t;
-
-static void put_character(hk_line_t *line, char character)
+static void end_calibration(hk_app_t *app, bool found)
 {
-    if (line->length < sizeof line->text - 1U) {
-        line->text[line->length++] = character;
-        line->text[line->length] = '\0';
+    hk_command_end(app, HK_LATE_CALIBRATION, found ? MAV_RESULT_ACCEPTED : MAV_RESULT_FAILED);
+    hk_app_notice(app, found ? HK_NOTICE_CALIBRATED : HK_NOTICE_MOVED);
+}
+
+/* What was asked for is stored; what every start finds anew is not. */
+static void use_calibration(hk_app_t *app, const float gyro_count[3])
+{
+    const bool found = hk_settings_calibrate(app, gyro_count);
+
+    if (found && app->late[HK_LATE_CALIBRATION].waited_for) {
+        app->unsaved = true;
+        app->changed_us = (uint32_t)app->now_us;
     }
+    end_calibration(app, found);
 }
 
-static void put(hk_line_t *line, const char *text)
+static void calibrate_with(hk_app_t *app, const hk_mpu6050_sample_t *sample)
 {
-    for (; *text != '\0'; text++) {
-        put_character(line, *text);
-    }
-}
+    float gyro_count[3];
 
-static void put_hex(hk_line_t *line, uint8_t value)
-{
-    put(line, "0x");
-    put_character(line, HK_HEX_DIGITS[value >> 4]);
-    put_character(line, HK_HEX_DIGITS[value & 0x0FU]);
-}
-
-static void put_number(hk_line_t *line, uint16_t value)
-{
-    uint16_t unit = 10000U;
-
-    while (unit > 1U && value < unit) {
-        unit /= 10U;
-    }
-    for (; unit > 0U; unit /= 10U) {
-        put_character(line, HK_HEX_DIGITS[value / unit % 10U]);
-    }
-}
-
-/* What stands in a text for each kind of event; no failed transfer is told by itself. */
-static const char *what_happened(hk_mpu6050_kind_t kind)
-{
-    switch (kind) {
-    case HK_MPU6050_TORN:
-        return "torn burst";
-    case HK_MPU6050_DEAD_BUS:
-        return "bus failed, restart";
-    case HK_MPU6050_REGISTER:
-        return "restart, register ";
-    case HK_MPU6050_SELF_RESET:
-        return "had reset itself, restart";
-    case HK_MPU6050_LOST_READY:
-        return "INT lost, polling";
-    case HK_MPU6050_SILENT:
-        return "silent, restart";
-    case HK_MPU6050_FROZEN:
-        return "frozen, restart";
-    case HK_MPU6050_VARIANT:
-        return "WHO_AM_I ";
-    case HK_MPU6050_TRANSFER:
-    case HK_MPU6050_KINDS:
-        break;
-    }
-    return "";
-}
-
-static bool is_grave(hk_mpu6050_kind_t kind)
-{
-    return kind != HK_MPU6050_TORN && kind != HK_MPU6050_LOST_READY && kind != HK_MPU6050_VARIANT;
-}
-
-/* One line: what happened, what was found, and how often so far. */
-static bool tell(hk_app_t *app, hk_mpu6050_kind_t kind)
-{
-    const hk_mpu6050_t *sensor = &app->sensor;
-    hk_line_t line = {.length = 0U};
-
-    put(&line, "MPU-6050: ");
-    put(&line, what_happened(kind));
-    if (kind == HK_MPU6050_VARIANT) {
-        put_hex(&line, sensor->who_am_i);
-        put(&line, " taken for ");
-        put(&line, hk_mpu6050_part(sensor->who_am_i));
-    } else {
-        if (kind == HK_MPU6050_REGISTER) {
-            put_hex(&line, sensor->bad_register);
-            put(&line, " was ");
-            put_hex(&line, sensor->bad_value);
-        }
-        put(&line, " #");
-        put_number(&line, sensor->count[kind]);
-    }
-    return hk_telemetry_text(&app->telemetry,
-                             is_grave(kind) ? MAV_SEVERITY_ERROR : MAV_SEVERITY_WARNING, line.text);
-}
-
-/* Tell one event that has not been told; one that does not fit the queue is told later. */
-static void tell_next(hk_app_t *app)
-{
-    uint8_t kind;
-
-    for (kind = 0U; kind < HK_MPU6050_KINDS; kind++) {
-        const uint16_t bit = (uint16_t)(1U << kind);
-
-        if ((app->sensor.untold & bit) != 0U) {
-            if (tell(app, (hk_mpu6050_kind_t)kind)) {
-                app->sensor.untold &= (uint16_t)~bit;
-            }
-            return;
+    if (!app->start_calibrated) {
+        app->start_calibrated = true;
+        if (app->parameters.calibrate_at_start != 0U) {
+            hk_calibration_start(&app->calibration, (uint32_t)app->now_us);
         }
     }
+    if (sample->after_gap) {
+        hk_calibration_drop(&app->calibration);
+    }
+    if (hk_calibration_take(&app->calibration, sample->accel, sample->gyro, gyro_count)
+        == HK_CALIBRATION_DONE) {
+        use_calibration(app, gyro_count);
+    }
 }
 
-static void refuse(hk_app_t *app)
-{
-    hk_line_t line = {.length = 0U};
+/* --- Self-test ------------------------------------------------------------------------------ */
 
-    set_status(app, MAV_STATE_CRITICAL);
-    if (hk_mpu6050_bus_fault(&app->sensor)) {
-        (void)hk_telemetry_text(&app->telemetry, MAV_SEVERITY_CRITICAL,
-                                "MPU-6050 does not answer: I2C bus fault");
-        return;
-    }
-    put(&line, "MPU-6050 refused: WHO_AM_I is ");
-    put_hex(&line, app->sensor.who_am_i);
-    (void)hk_telemetry_text(&app->telemetry, MAV_SEVERITY_CRITICAL, line.text);
+static void end_self_test(hk_app_t *app)
+{
+    hk_command_end(app, HK_LATE_SELF_TEST,
+                   app->sensor.self_test == HK_SELF_TEST_PASSED ? MAV_RESULT_ACCEPTED
+                                                                : MAV_RESULT_FAILED);
+    hk_app_notice(app, HK_NOTICE_SELF_TEST);
 }
 
 /* --- Samples -------------------------------------------------------------------------------- */
 
-static void take_sample(hk_app_t *app, const hk_mpu6050_sample_t *sample)
+static bool saturated(const int16_t count[3])
 {
-    hk_sample_facts_t facts;
+    uint8_t axis;
+
+    for (axis = 0U; axis < 3U; axis++) {
+        if (count[axis] >= HK_COUNT_LIMIT || count[axis] <= -HK_COUNT_LIMIT) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint8_t flags_of(const hk_app_t *app, const hk_mpu6050_sample_t *sample, bool restarted)
+{
+    uint8_t flags = app->retuned ? HOSTKIT_SAMPLE_RETUNED : 0U;
+
+    if (restarted) {
+        flags |= HOSTKIT_SAMPLE_RESTARTED;
+    }
+    if (saturated(sample->accel) || saturated(sample->gyro)) {
+        flags |= HOSTKIT_SAMPLE_SATURATED;
+    }
+    return flags;
+}
+
+static void take_sample(hk_app_t *app)
+{
+    hk_latest_t *latest = &app->latest;
+    const hk_mpu6050_sample_t *sample = &latest->sample;
+    bool restarted;
 
     if (sample->after_gap) {
         hk_filter_init(&app->filter);
     }
     hk_hal_mark_begin();
-    facts.restarted = hk_filter_update(&app->filter, sample->accel, sample->gyro);
+    restarted = hk_filter_update(&app->filter, sample->accel, sample->gyro);
     hk_hal_mark_end();
-    facts.time_us = full_time_us(app, sample->time_us);
-    facts.sequence = app->sequence++;
-    facts.i2c_errors = app->sensor.errors;
-    (void)hk_telemetry_sample(&app->telemetry, &app->filter, sample, &facts);
-    if (app->to_attitude == 0U) {
-        app->to_attitude = HK_ATTITUDE_EVERY;
-        (void)hk_telemetry_attitude(&app->telemetry, &app->filter, sample, facts.time_us);
-    }
-    app->to_attitude--;
-    set_status(app, MAV_STATE_ACTIVE);
+    latest->time_us = full_time_us(app, sample->time_us);
+    latest->sequence = app->samples++;
+    latest->flags = flags_of(app, sample, restarted);
+    hk_stream_sample(&app->stream);
+    app->sensor_status = MAV_STATE_ACTIVE;
+    calibrate_with(app, sample);
 }
 
 static void poll_sensor(hk_app_t *app)
@@ -188,46 +152,87 @@ static void poll_sensor(hk_app_t *app)
     switch (hk_mpu6050_poll(&app->sensor, (uint32_t)app->now_us, &sample)) {
     case HK_MPU6050_STARTED:
         hk_filter_init(&app->filter);
+        hk_calibration_drop(&app->calibration);
         break;
     case HK_MPU6050_SAMPLE:
-        take_sample(app, &sample);
+        app->latest.sample = sample;
+        take_sample(app);
         break;
     case HK_MPU6050_REFUSAL:
-        refuse(app);
+        app->sensor_status = MAV_STATE_CRITICAL;
+        hk_app_notice(app, HK_NOTICE_REFUSED);
+        break;
+    case HK_MPU6050_SELF_TESTED:
+        end_self_test(app);
         break;
     case HK_MPU6050_NOTHING:
         break;
     }
-    if (app->sensor.state != HK_MPU6050_RUN && app->system_status == MAV_STATE_ACTIVE) {
-        set_status(app, MAV_STATE_CRITICAL); /* until samples come again */
+    if (app->sensor.state != HK_MPU6050_RUN && app->sensor_status == MAV_STATE_ACTIVE) {
+        app->sensor_status = MAV_STATE_CRITICAL; /* until samples come again */
     }
 }
 
-static void send_heartbeat(hk_app_t *app)
+/* --- The link ------------------------------------------------------------------------------- */
+
+/* Send what is due, the most important first, as long as there is room. */
+static void send_due(hk_app_t *app)
 {
-    if (app->now_us >= app->heartbeat_us
-        && hk_telemetry_heartbeat(&app->telemetry, app->system_status)) {
-        app->heartbeat_us = app->now_us + HK_HEARTBEAT_US;
+    uint8_t which;
+
+    hk_stream_time(&app->stream, (uint32_t)app->now_us);
+    while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+        if (!hk_telemetry_stream(app, which)) {
+            return;
+        }
+        hk_stream_sent(&app->stream, which);
+    }
+    if (app->version_wanted && hk_telemetry_version(app)) {
+        app->version_wanted = false;
     }
 }
+
+/* --- The whole ------------------------------------------------------------------------------ */
 
 void hk_app_init(hk_app_t *app)
 {
+    const hk_reset_cause_t cause = hk_hal_reset_cause();
+
+    (void)memset(app, 0, sizeof *app);
     app->now_us = hk_hal_time_us();
-    app->heartbeat_us = app->now_us;
-    app->sequence = 0U;
-    app->to_attitude = 0U;
+    app->load.since_us = (uint32_t)app->now_us;
+    app->sensor_status = MAV_STATE_BOOT;
     app->system_status = MAV_STATE_BOOT;
+    hk_settings_init(app);
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
+    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
-    hk_telemetry_init(&app->telemetry);
+    hk_link_init(&app->link, app->parameters.system_id);
+    hk_stream_init(&app->stream, (uint32_t)app->now_us);
+    hk_receiver_init(&app->receiver);
+    hk_calibration_init(&app->calibration);
+    if (cause == HK_RESET_WATCHDOG || cause == HK_RESET_BROWN_OUT) {
+        hk_app_notice(app, HK_NOTICE_RESET);
+    }
 }
 
 bool hk_app_poll(hk_app_t *app)
 {
+    bool more;
+
     advance_clock(app);
+    hk_hal_watchdog_feed();
+    more = hk_protocol_poll(app);
+    hk_settings_poll(app);
     poll_sensor(app);
-    tell_next(app);
-    send_heartbeat(app);
-    return hk_mpu6050_waiting(&app->sensor);
+    if (hk_calibration_poll(&app->calibration, (uint32_t)app->now_us) == HK_CALIBRATION_MOVED) {
+        end_calibration(app, false);
+    }
+    tell_status(app);
+    send_due(app);
+    hk_notice_poll(app);
+    hk_command_poll(app);
+    app->load.paused = hk_mpu6050_waiting(&app->sensor) && !more;
+    app->load.paused_us = hk_hal_time_us();
+    return app->load.paused;
 }

@@ -1,12 +1,12 @@
 /* The hardware layer on a host: see hk_hal.h and hk_host_board.h. */
 #include "hk_hal.h"
 
-#include <errno.h>
 #include <signal.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "hk_host_board.h"
+#include "hk_host_link.h"
+#include "hk_host_store.h"
 #include "hk_virtual_mpu6050.h"
 
 #define HK_NS_PER_S   UINT64_C(1000000000)
@@ -15,12 +15,17 @@
 #define HK_POLL_NS    UINT64_C(10000)    /* a turn of the main loop that does not sleep */
 #define HK_TIMEOUT_NS UINT64_C(1000000)
 #define HK_STALL_NS   (5U * HK_NS_PER_S)
+#define HK_WATCHDOG_NS (2U * HK_NS_PER_S)
 #define HK_RECOVERY_CLOCKS 9
 
 static struct {
     hk_virtual_mpu6050_t sensor;
     hk_host_options_t options;
     uint64_t now_ns;
+    uint64_t reset_ns; /* when the processor started last; its clock counts from there */
+    uint64_t fed_ns;   /* when the watchdog was fed last */
+    hk_reset_cause_t cause;
+    uint32_t resets;
     uint64_t progress_ns; /* when the last row was taken */
     uint32_t progress_row;
     bool faults_armed;
@@ -31,6 +36,40 @@ static struct {
 } board;
 
 static volatile sig_atomic_t stop_requested;
+
+jmp_buf hk_host_reset_vector;
+
+uint64_t hk_host_board_now_ns(void)
+{
+    return board.now_ns;
+}
+
+/* The supply of the sensor fails and comes back: what it did on the bus ends, and it resets. */
+static void power_cycle_sensor(void)
+{
+    hk_virtual_mpu6050_stop(&board.sensor);
+    hk_virtual_mpu6050_nack_next(&board.sensor, 0U);
+    hk_virtual_mpu6050_hold_sda(&board.sensor, 0U);
+    (void)hk_virtual_mpu6050_start(&board.sensor, HK_MPU6050_ADDRESS, false);
+    (void)hk_virtual_mpu6050_write(&board.sensor, HK_REG_PWR_MGMT_1);
+    (void)hk_virtual_mpu6050_write(&board.sensor, HK_PWR_DEVICE_RESET);
+    hk_virtual_mpu6050_stop(&board.sensor);
+}
+
+void hk_host_board_restart(hk_reset_cause_t cause)
+{
+    board.cause = cause;
+    board.resets++;
+    board.reset_ns = board.now_ns;
+    board.fed_ns = board.now_ns;
+    if (cause == HK_RESET_POWER) {
+        power_cycle_sensor();
+    } else {
+        hk_virtual_mpu6050_stop(&board.sensor); /* the bus is let go */
+    }
+    hk_host_link_drop(board.now_ns);
+    longjmp(hk_host_reset_vector, 1);
+}
 
 static void arm_faults(void)
 {
@@ -66,6 +105,9 @@ static void pass(uint64_t ns)
 {
     board.now_ns += ns;
     hk_virtual_mpu6050_advance(&board.sensor, board.now_ns);
+    if (board.now_ns - board.fed_ns > HK_WATCHDOG_NS) {
+        hk_host_board_restart(HK_RESET_WATCHDOG);
+    }
 }
 
 static void sleep_until_now(void)
@@ -78,7 +120,7 @@ static void sleep_until_now(void)
     (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 }
 
-void hk_host_board_init(const hk_host_options_t *options)
+bool hk_host_board_init(const hk_host_options_t *options)
 {
     uint32_t i;
 
@@ -95,6 +137,11 @@ void hk_host_board_init(const hk_host_options_t *options)
     }
     (void)clock_gettime(CLOCK_MONOTONIC, &board.start);
     arm_faults();
+    if (options->realtime) {
+        hk_host_link_listen();
+    }
+    return hk_host_link_play(options->received)
+           && hk_host_store_open(options->store, options->power_cut);
 }
 
 /* A turn of the main loop in which the firmware did not sleep takes its time too. */
@@ -114,7 +161,11 @@ static void end_turn(void)
 bool hk_host_board_finished(void)
 {
     end_turn();
-    return board.ended || stop_requested != 0;
+    if (board.ended || stop_requested != 0) {
+        (void)hk_host_link_flush();
+        return true;
+    }
+    return false;
 }
 
 void hk_host_board_stop(void)
@@ -127,6 +178,7 @@ hk_host_statistics_t hk_host_board_statistics(void)
     const hk_host_statistics_t statistics = {
         .rows_played = hk_virtual_mpu6050_rows_played(&board.sensor),
         .unread_samples = hk_virtual_mpu6050_unread_samples(&board.sensor),
+        .resets = board.resets,
         .struck = hk_virtual_mpu6050_struck(&board.sensor),
         .stalled = board.stalled,
         .time_s = (double)board.now_ns / (double)HK_NS_PER_S,
@@ -137,6 +189,22 @@ hk_host_statistics_t hk_host_board_statistics(void)
 
 void hk_hal_init(void)
 {
+    board.fed_ns = board.now_ns;
+}
+
+hk_reset_cause_t hk_hal_reset_cause(void)
+{
+    return board.cause;
+}
+
+void hk_hal_reboot(void)
+{
+    hk_host_board_restart(HK_RESET_REQUEST);
+}
+
+void hk_hal_watchdog_feed(void)
+{
+    board.fed_ns = board.now_ns;
 }
 
 /* Let the time of some bits pass; false if the sensor holds the clock for too long. */
@@ -206,29 +274,31 @@ void hk_hal_i2c_recover(void)
 
 uint32_t hk_hal_time_us(void)
 {
-    return (uint32_t)(board.now_ns / 1000U);
+    return (uint32_t)((board.now_ns - board.reset_ns) / 1000U);
 }
 
 bool hk_hal_data_ready(uint32_t *time_us)
 {
-    *time_us = (uint32_t)(hk_virtual_mpu6050_published_ns(&board.sensor) / 1000U);
+    const uint64_t published_ns = hk_virtual_mpu6050_published_ns(&board.sensor);
+
+    *time_us = (uint32_t)((published_ns - board.reset_ns) / 1000U);
     return hk_virtual_mpu6050_int_pin(&board.sensor);
 }
 
 bool hk_hal_transmit(const uint8_t *bytes, uint8_t count)
 {
-    uint8_t done = 0U;
+    hk_host_link_put(bytes, count);
+    return true;
+}
 
-    while (done < count && !board.ended && stop_requested == 0) {
-        const ssize_t written = write(STDOUT_FILENO, &bytes[done], (size_t)(count - done));
+uint8_t hk_hal_transmit_room(void)
+{
+    return UINT8_MAX; /* the host's queue is as long as it takes */
+}
 
-        if (written > 0) {
-            done = (uint8_t)(done + written);
-        } else if (written < 0 && errno != EINTR) {
-            board.ended = true; /* nobody reads any more */
-        }
-    }
-    return done == count;
+bool hk_hal_receive(uint8_t *byte)
+{
+    return hk_host_link_take(board.now_ns, byte);
 }
 
 void hk_hal_idle(void)
@@ -244,6 +314,15 @@ void hk_hal_idle(void)
     }
     if (until > board.now_ns + HK_TICK_NS) {
         until = board.now_ns + HK_TICK_NS;
+    }
+    if (until > hk_host_link_next_ns()) {
+        until = hk_host_link_next_ns();
+    }
+    if (until < board.now_ns + HK_POLL_NS) {
+        until = board.now_ns + HK_POLL_NS; /* a byte that waits does not hold the time up */
+    }
+    if (board.options.realtime && !hk_host_link_flush()) {
+        board.ended = true; /* nobody reads any more */
     }
     pass(until - board.now_ns);
     if (board.options.realtime) {

@@ -2,9 +2,11 @@
 #ifndef HK_HOST_BOARD_H
 #define HK_HOST_BOARD_H
 
+#include <setjmp.h>
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hk_hal.h"
 #include "hk_virtual_mpu6050.h"
 
 /* A planned fault: see hk_virtual_mpu6050_plan. */
@@ -34,11 +36,22 @@ typedef struct {
     uint32_t rows_played;
     uint32_t unread_samples;
     uint32_t struck; /* planned faults that have come */
+    uint32_t resets; /* of the processor */
     bool stalled; /* no row was taken for a long time, so the run was ended */
     double time_s;
 } hk_host_statistics_t;
 
-void hk_host_board_init(const hk_host_options_t *options);
+/* Returns false if a file cannot be used. */
+bool hk_host_board_init(const hk_host_options_t *options);
+
+/* Where a processor that is reset goes on; to be set before anything else of the hk_hal is used. */
+extern jmp_buf hk_host_reset_vector;
+
+/* Reset the processor, and after HK_RESET_POWER the sensor too. Does not return. */
+void hk_host_board_restart(hk_reset_cause_t cause);
+
+/* Time since the program began. */
+uint64_t hk_host_board_now_ns(void);
 
 /* True when the table has been played, nobody reads any more, or hk_host_board_stop was called. */
 bool hk_host_board_finished(void);

@@ -164,7 +164,8 @@ static void write_statistics(const char *path)
     }
     (void)fprintf(file, "{\"rows_played\": %lu, \"unread_samples\": %lu, \"stalled\": %d, ",
                   (unsigned long)s.rows_played, (unsigned long)s.unread_samples, s.stalled ? 1 : 0);
-    (void)fprintf(file, "\"struck\": %lu, \"time_s\": %.6f}\n", (unsigned long)s.struck, s.time_s);
+    (void)fprintf(file, "\"struck\": %lu, \"resets\": %lu, \"time_s\": %.6f}\n",
+                  (unsigned long)s.struck, (unsigned long)s.resets, s.time_s);
     (void)fclose(file);
 }
 
@@ -174,19 +175,12 @@ static void on_signal(int number_of_signal)
     hk_host_board_stop();
 }
 
-int main(int argc, char **argv)
+/* The firmware from its reset on, which may come again and again. */
+static void run(void)
 {
-    hk_host_options_t options = {.who_am_i = -1, .power_cut = -1};
-    const char *statistics = NULL;
-    const char *table = parse(argc, argv, &options, &statistics);
-    double *rows = load_table(table, &options.row_count);
-    hk_app_t app;
+    static hk_app_t app;
 
-    (void)signal(SIGPIPE, SIG_IGN);
-    (void)signal(SIGTERM, on_signal);
-    (void)signal(SIGINT, on_signal);
-    options.rows = rows;
-    hk_host_board_init(&options);
+    (void)setjmp(hk_host_reset_vector);
     hk_hal_init();
     hk_app_init(&app);
     while (!hk_host_board_finished()) {
@@ -194,6 +188,23 @@ int main(int argc, char **argv)
             hk_hal_idle();
         }
     }
+}
+
+int main(int argc, char **argv)
+{
+    hk_host_options_t options = {.who_am_i = -1, .power_cut = -1};
+    const char *statistics = NULL;
+    const char *table = parse(argc, argv, &options, &statistics);
+    double *rows = load_table(table, &options.row_count);
+
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGTERM, on_signal);
+    (void)signal(SIGINT, on_signal);
+    options.rows = rows;
+    if (!hk_host_board_init(&options)) {
+        fail("--store or --received", "names a file that cannot be used");
+    }
+    run();
     if (statistics != NULL) {
         write_statistics(statistics);
     }

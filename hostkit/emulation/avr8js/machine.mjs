@@ -18,7 +18,6 @@ const SRAM_BYTES = 2048;
 const SRAM_START = 0x100;
 const START_UP_CYCLES = 16_384 + 0.065 * CLOCK_HZ; // after every reset, with the fuses of an Uno
 const LOST = 0xa7; // what the memory holds when the supply comes back
-const REGISTERS = 32;
 
 const SLEEP = 0x9588;
 const RETI = 0x9518;
@@ -77,9 +76,7 @@ export class Machine {
     this.deepestStack = this.stackBytes;
     this.#build(powered ? resetFlags(this.cpu) | flags : flags, cycles + START_UP_CYCLES);
     this.cpu.data.set(data.subarray(SRAM_START), SRAM_START);
-    if (powered) {
-      this.cpu.data.set(data.subarray(0, REGISTERS));
-    } else {
+    if (!powered) {
       this.#paint(LOST);
       this.sensor.powerCycle();
     }

@@ -59,7 +59,7 @@ class Interrupts(ctypes.Structure):
     active: int
     ready: int
     configuration: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("enabled", ctypes.c_uint64),
         ("pending", ctypes.c_uint64),
         ("requests", ctypes.c_uint64),
@@ -80,7 +80,7 @@ class State(ctypes.Structure):
     begun: int
     fault: int
     fault_address: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("time", Timeline),
         ("interrupts", Interrupts),
         ("instructions", ctypes.c_uint64),
@@ -182,7 +182,7 @@ class Core:
         return buffer.raw
 
     def paint(self) -> None:
-        """Fill the RAM with what tells unused stack, as a new supply voltage would with anything."""
+        """Fill the RAM with what tells unused stack; a new supply would with anything."""
         self.poke(RAM_START, bytes([PAINT]) * RAM_BYTES)
 
     def reset(self) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from hostkit.emulation.stm32.clocks import Clocks
-from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusFault, Timeline
+from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusError, Timeline
 from hostkit.errors import EmulationError
 
 PAGE_BYTES = 1024
@@ -100,7 +100,7 @@ class Flash:
 
         Raises
         ------
-        BusFault
+        BusError
             If a key is wrong or comes out of turn: the controller stays locked until a reset.
         """
         if offset == ACR:
@@ -122,7 +122,7 @@ class Flash:
         if self._shut or not self._cr & LOCK or value != KEYS[self._keys_given]:
             self._shut = True
             self._cr = LOCK
-            raise BusFault("FLASH_KEYR gets a wrong key; the flash stays locked until a reset")
+            raise BusError("FLASH_KEYR gets a wrong key; the flash stays locked until a reset")
         self._keys_given = (self._keys_given + 1) % len(KEYS)
         if self._keys_given == 0:
             self._cr &= ~LOCK
@@ -170,12 +170,12 @@ class Flash:
 
         Raises
         ------
-        BusFault
+        BusError
             If the flash is locked, PG is not set, or it is not two bytes at once.
         """
         self._require_idle("the store")
         if self._cr & LOCK or not self._cr & PG or self._cr & PER or size != HALFWORD:
-            raise BusFault(f"{size} bytes are written to flash with FLASH_CR = {self._cr:#x}")
+            raise BusError(f"{size} bytes are written to flash with FLASH_CR = {self._cr:#x}")
         old = self.read_store(place, HALFWORD)
         if old != 0xFFFF and value != 0:
             self._sr |= PGERR

@@ -1,33 +1,18 @@
 """The whole board: core, memory, peripherals, the sensor on its pins, and the course of time."""
 
 from hostkit.emulation.board import LinkInput
-from hostkit.emulation.stm32.clocks import (
-    APB1ENR,
-    APB2ENR,
-    BY_PIN,
-    BY_POWER,
-    BY_REQUEST,
-    BY_WATCHDOG,
-    Clocks,
-)
+from hostkit.emulation.stm32.clocks import BY_PIN, BY_POWER
 from hostkit.emulation.stm32.core import FLASH_BYTES, Core, Outcome, Segments
-from hostkit.emulation.stm32.flash import STORE_BYTES, STORE_START, Flash, Store
-from hostkit.emulation.stm32.i2c import I2cMaster
-from hostkit.emulation.stm32.nvic import ControlBlock, Nvic
-from hostkit.emulation.stm32.pins import Lines, Port, Selector, Wires
-from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusFault, Device, Peripheral
-from hostkit.emulation.stm32.timer import Timer
-from hostkit.emulation.stm32.usart import Sender, Usart
-from hostkit.emulation.stm32.watchdog import Watchdog
+from hostkit.emulation.stm32.flash import STORE_BYTES, STORE_START, Store
+from hostkit.emulation.stm32.peripherals import OFFSET, Outside, Peripherals
+from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusError, Device
+from hostkit.emulation.stm32.usart import Sender
 from hostkit.emulation.virtual_sensor import VirtualSensor
 from hostkit.errors import EmulationError
 
 PERIPHERALS_START, PERIPHERALS_BYTES = 0x40000000, 0x23000
 CORE_START, CORE_BYTES = 0xE000E000, 0x1000
-BLOCK_SHIFT = 10
-OFFSET = 0x3FF
-TX_PIN, RX_PIN, MARK_PIN = 9, 10, 8
-EXTI9_5, TIM2, TIM3, USART1 = 23, 28, 29, 37
+MARK_PIN = 8
 TYPICAL_LSI_HZ = 40_000
 PATIENCE_TICKS = TICK_HZ // 100
 """For so long a program that does not sleep may go on after the end of the table."""
@@ -92,8 +77,6 @@ class Machine:
         self.sensor = sensor
         self.store = Store(store, power_cut_after)
         self.resets = 0
-        self._peer_baud, self._lsi_hz = peer_baud, lsi_hz
-        self._crystal_starts = crystal_starts
         self._handles_faults = handles_faults
         self._core = Core(
             image,
@@ -110,60 +93,30 @@ class Machine:
         ):
             self._core.map(start, size)
         self._deepest_stack = 0
-        self._played_at = NEVER
         self._reset_by: int | None = None
         self._sender = Sender(self.time, peer_baud, received)
-        self._power_up(BY_POWER | BY_PIN)
+        self._outside = Outside(
+            sensor=sensor,
+            store=self.store,
+            peer_baud=peer_baud,
+            heard=self.link.append,
+            crystal_starts=crystal_starts,
+            lsi_hz=lsi_hz,
+            reset=self._reset,
+        )
+        self._start(BY_POWER | BY_PIN)
 
-    # --- construction and resets -----------------------------------------------------------------
+    # --- resets -----------------------------------------------------------------------------------
 
-    def _power_up(self, flags: int) -> None:
+    def _start(self, flags: int) -> None:
         """Stand before the first instruction, with all peripherals as after a reset."""
         self._begun_at: int | None = None
         self._sleeping = False
         self.time.ticks_per_instruction = 1
         self._core.reset()
-        self._make_peripherals(flags)
-        self._wire()
-
-    def _make_peripherals(self, flags: int) -> None:
-        time, sensor = self.time, self.sensor
-        self._clocks = Clocks(time, crystal_starts=self._crystal_starts, reset_flags=flags)
-        self._timer, self._ticker = Timer(time, self._clocks), Timer(time, self._clocks)
-        self._port_a, self._port_b, self._lines = Port(), Port(), Lines()
-        self._wires = Wires(time, self._port_b, self._lines, sensor)
-        self._i2c = I2cMaster(time, self._clocks, self._wires, sensor)
-        self._usart = Usart(time, self._clocks, peer_baud=self._peer_baud, heard=self.link.append)
-        self._sender.arrive = self._usart.arrive
-        self._flash = Flash(time, self._clocks, self.store, lambda: self._reset(BY_POWER))
-        self._watchdog = Watchdog(time, self._lsi_hz, lambda: self._reset(BY_WATCHDOG))
-        self._devices: tuple[Device, ...] = (
-            *(self._clocks, self._timer, self._ticker, self._wires, self._i2c, self._usart),
-            *(self._sender, self._flash, self._watchdog),
-        )
-        requesters = {EXTI9_5: self._lines, TIM2: self._timer, TIM3: self._ticker}
-        self._nvic = Nvic(self._core, {**requesters, USART1: self._usart})
-
-    def _wire(self) -> None:
-        control = ControlBlock(self._core, lambda: self._reset(BY_REQUEST))
-        placed: tuple[tuple[int, Peripheral, tuple[int, int] | None], ...] = (
-            (0x40000000, self._timer, (APB1ENR, 0)),
-            (0x40000400, self._ticker, (APB1ENR, 1)),
-            (0x40003000, self._watchdog, None),
-            (0x40005400, self._i2c, (APB1ENR, 21)),
-            (0x40010000, Selector(self._lines), (APB2ENR, 0)),
-            (0x40010400, self._lines, None),
-            (0x40010800, self._port_a, (APB2ENR, 2)),
-            (0x40010C00, self._port_b, (APB2ENR, 3)),
-            (0x40013800, self._usart, (APB2ENR, 14)),
-            (0x40021000, self._clocks, None),
-            (0x40022000, self._flash, None),
-            (0xE000E000, self._nvic, None),
-            (0xE000EC00, control, None),
-        )
-        self._places = {
-            start >> BLOCK_SHIFT: (peripheral, gate) for start, peripheral, gate in placed
-        }
+        self._own = own = Peripherals(self._core, self._outside, flags)
+        self._sender.arrive = own.usart.arrive
+        self._devices: tuple[Device, ...] = (*own.devices, self._sender)
 
     def _reset(self, by: int) -> None:
         """Reset the board as soon as the instruction that is carried out has ended."""
@@ -174,14 +127,14 @@ class Machine:
         by, self._reset_by = self._reset_by or BY_PIN, None
         self.resets += 1
         self._deepest_stack = self.stack_bytes
-        flags = self._clocks.reset_flags | by | BY_PIN
+        flags = self._own.clocks.reset_flags | by | BY_PIN
         if by == BY_POWER:
             flags = BY_POWER | BY_PIN
             self._core.paint()
             self._power_sensor()
             self.time.now += POWER_UP_TICKS
         self.time.stalled_until = 0
-        self._power_up(flags)
+        self._start(flags)
         self._plan()
 
     def _power_sensor(self) -> None:
@@ -201,12 +154,10 @@ class Machine:
     @property
     def finished(self) -> bool:
         """Whether the table has been played and read, and every byte is out."""
-        if not self.sensor.exhausted:
-            self._played_at = NEVER
+        if self._own.wires.played_at == NEVER or not self._own.usart.idle:
             return False
-        self._played_at = min(self._played_at, self.time.now)
-        patience_over = self.time.now - self._played_at > PATIENCE_TICKS
-        return (self._sleeping or patience_over) and self._usart.idle
+        patience_over = self.time.now - self._own.wires.played_at > PATIENCE_TICKS
+        return patience_over or (self._sleeping and self.sensor.exhausted)
 
     @property
     def stack_bytes(self) -> int:
@@ -220,7 +171,7 @@ class Machine:
 
     def sensor_moved(self) -> None:
         """Look at the sensor again after something was done to it from outside."""
-        self._wires.happen()
+        self._own.wires.happen()
         self._plan()
 
     def run(self, seconds: float) -> None:
@@ -243,34 +194,39 @@ class Machine:
 
     # --- the course of time ----------------------------------------------------------------------
 
+    def _next(self) -> Device:
+        """Return what happens next."""
+        first = self._devices[0]
+        due = first.due
+        for device in self._devices:
+            if device.due < due:
+                first, due = device, device.due
+        return first
+
     def _plan(self) -> None:
         """Look at the requests, and at when the next thing happens."""
-        self._nvic.update()
-        wake = self.time.until
-        for device in self._devices:
-            if device.due < wake:
-                wake = device.due
-        self.time.wake = wake
+        self._own.nvic.update()
+        self.time.wake = min(self.time.until, self._next().due)
 
     def _let_happen(self) -> None:
         """Let happen what is due, the earliest first; what befell a stalled core, each in time."""
         time = self.time
         now = time.now
-        stalled = self._flash.due <= now
-        while self._reset_by is None:
-            device = min(self._devices, key=_due)
-            if device.due > now:
-                break
+        stalled = self._own.flash.due <= now
+        device = self._next()
+        while device.due <= now and self._reset_by is None:
             if stalled:
                 time.now = device.due
             device.happen()
+            device = self._next()
         time.now = now
-        self._plan()
+        self._own.nvic.update()
+        time.wake = min(time.until, device.due)
 
     def _doze(self) -> None:
         """Jump from event to event until an interrupt ends the sleep."""
-        while not self._nvic.wakes:
-            if min(device.due for device in self._devices) == NEVER:
+        while not self._own.nvic.wakes:
+            if self._next().due == NEVER:
                 raise EmulationError("the firmware sleeps for ever")
             self.time.now = max(self.time.now, self.time.wake)
             self._let_happen()
@@ -282,7 +238,7 @@ class Machine:
     def _run_instructions(self) -> None:
         try:
             outcome = self._core.run()
-        except BusFault as fault:
+        except BusError as fault:
             self._fault(str(fault))
             return
         state = self._core.state
@@ -304,49 +260,41 @@ class Machine:
 
     # --- registers -------------------------------------------------------------------------------
 
-    def _find(self, address: int) -> Peripheral | None:
-        """Return what answers at an address; None for a peripheral that has no clock."""
-        found = self._places.get(address >> BLOCK_SHIFT)
-        if found is None:
-            raise EmulationError(f"the firmware uses {address:#010x}, which is not modelled")
-        peripheral, gate = found
-        return peripheral if gate is None or self._clocks.clocked(*gate) else None
-
     def _read(self, address: int, size: int) -> int:
+        own = self._own
         if address < PERIPHERALS_START:
-            return self._flash.read_store(address - STORE_START, size)
-        peripheral = self._find(address)
+            return own.flash.read_store(address - STORE_START, size)
+        peripheral = own.find(address)
         if peripheral is None:
             return 0
-        if peripheral is self._i2c and self._i2c.polled_in_vain():
+        if peripheral is own.i2c and own.i2c.polled_in_vain():
             self._wait()
         value = peripheral.read(address & OFFSET)
-        if peripheral is self._i2c or peripheral is self._usart:
+        if peripheral is own.i2c or peripheral is own.usart:
             self._plan()
         return value
 
     def _wait(self) -> None:
         """Let a program that polls in vain wait for the next event: the time passes, unspent."""
         now = self.time.now
-        next_due = min(d.due for d in self._devices)
-        self.time.now = max(now, min(next_due, now + LONGEST_WAIT_TICKS))
+        self.time.now = max(now, min(self._next().due, now + LONGEST_WAIT_TICKS))
         self._let_happen()
 
     def _write(self, address: int, size: int, value: int) -> None:
+        own = self._own
         if address < PERIPHERALS_START:
-            self._flash.program(address - STORE_START, size, value)
+            own.flash.program(address - STORE_START, size, value)
             self._plan()
             return
-        peripheral = self._find(address)
+        peripheral = own.find(address)
         if peripheral is None:
             return
         peripheral.write(address & OFFSET, value)
-        if peripheral is self._port_a:
-            self._usart.wired = self._port_a.peripheral(TX_PIN)
-            self._usart.listens = not self._port_a.mode(RX_PIN) & 3
-            self._mark(bool(self._port_a.output >> MARK_PIN & 1))
-        elif peripheral is self._port_b:
-            self._wires.moved_by_program()
+        if peripheral is own.port_a:
+            own.connect_link()
+            self._mark(bool(own.port_a.output >> MARK_PIN & 1))
+        elif peripheral is own.port_b:
+            own.wires.moved_by_program()
         self._plan()
 
     def _mark(self, begins: bool) -> None:
@@ -357,7 +305,3 @@ class Machine:
         elif not begins and self._begun_at is not None:
             self.segments.add(own - self._begun_at)
             self._begun_at = None
-
-
-def _due(device: Device) -> int:
-    return device.due

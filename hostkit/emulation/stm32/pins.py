@@ -118,6 +118,8 @@ class Wires:
     ----------
     due
         When the sensor changes by itself.
+    played_at
+        When the table had been played and read for the first time.
     """
 
     def __init__(self, time: Timeline, port: Port, lines: Lines, sensor: VirtualSensor) -> None:
@@ -127,7 +129,7 @@ class Wires:
         self._sensor = sensor
         self._levels = (True, True)
         self._int = False
-        self.due = NEVER
+        self.due = self.played_at = NEVER
         self.happen()
 
     @property
@@ -152,6 +154,8 @@ class Wires:
         low = (1 << SDA) * (sensor.sda_low or port.pulls_low(SDA))
         port.driven_low = low | (1 << SCL) * port.pulls_low(SCL)
         self.due = tick_at(sensor.next_event_ns)
+        if self.played_at == NEVER and sensor.exhausted:
+            self.played_at = self._time.now
 
     def moved_by_program(self) -> None:
         """Let the sensor see what the program did with the bus: clocks, and STOP."""

@@ -35,7 +35,7 @@ class Timeline(ctypes.Structure):
     until: int
     wake: int
     stalled_until: int
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         ("now", ctypes.c_uint64),
         ("ticks_per_instruction", ctypes.c_uint64),
         ("until", ctypes.c_uint64),
@@ -54,7 +54,7 @@ class Timeline(ctypes.Structure):
         return self.now / TICK_HZ
 
 
-class BusFault(EmulationError):
+class BusError(EmulationError):
     """An access that the bus refuses; the core takes it for a fault of the program."""
 
 

@@ -123,7 +123,7 @@ def _in_use(item: RunTimeParameter, design: FilterDesign, spec: FixedPointSpec) 
         return design.period_s * (1.0 - blend) / blend
     i = spec.axes.index(item.axis)
     if item.kind == "tilt_offset":
-        return spec.tilt_offset_raw[i] * RAD_PER_HALF_TURN_LSB
+        return float(spec.tilt_offset_raw[i] * RAD_PER_HALF_TURN_LSB)
     return spec.gyro_bias_raw[i] * bias_unit_rad_s(design, spec.integral)
 
 
@@ -137,6 +137,5 @@ def _parameter(item: RunTimeParameter, value: float, period_s: float) -> Paramet
 def _towards_zero(value: float) -> float:
     """Return the nearest number of 32 bits that is not farther from zero."""
     near = np.float32(value)
-    if abs(float(near)) <= abs(value):
-        return float(near)
-    return float(np.nextafter(near, np.float32(0.0)))
+    inside = near if abs(float(near)) <= abs(value) else np.nextafter(near, np.float32(0.0))
+    return float(inside)

@@ -1,0 +1,32 @@
+/* Makes MAVLink 2 frames and queues them. */
+#ifndef HK_LINK_H
+#define HK_LINK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hk_mavlink.h"
+
+/* Bytes of a frame around its payload. */
+#define HK_FRAME_OVERHEAD 12U
+
+typedef struct {
+    uint8_t system_id;
+    uint8_t sequence; /* of the next frame; only frames that are queued are counted */
+} hk_link_t;
+
+void hk_link_init(hk_link_t *link, uint8_t system_id);
+
+/* Whether a frame with so much payload would find room. */
+bool hk_link_has_room(uint8_t payload_bytes);
+
+/* Queue a message. Returns false, and queues nothing, if the link has no room. */
+bool hk_link_send(hk_link_t *link, uint16_t id, uint8_t crc_extra, const void *payload,
+                  uint8_t length);
+
+/* The same for a message by its name, from the struct that mavgen has made for it. */
+#define HK_SEND(link, NAME, message) \
+    hk_link_send((link), (uint16_t)MAVLINK_MSG_ID_##NAME, MAVLINK_MSG_ID_##NAME##_CRC, (message), \
+                 MAVLINK_MSG_ID_##NAME##_LEN)
+
+#endif
