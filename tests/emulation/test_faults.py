@@ -110,6 +110,12 @@ def run(folder: Path, target: str, *faults: str, rows: int = ROWS) -> EmulationR
     return emulate(folder, TARGETS[target], design(), recording(rows), faults=planned)
 
 
+def folder_of(request: pytest.FixtureRequest, target: str) -> Path:
+    names = {"host": "host", "atmega328p": "avr", "rp2040": "pico", "stm32f103": "stm32"}
+    folder: Path = request.getfixturevalue(f"{names[target]}_folder")
+    return folder
+
+
 def assert_kept(result: EmulationResult, promise: Promise) -> None:
     report = result.fault_report
     assert report is not None
@@ -145,13 +151,13 @@ def test_blue_pill_keeps_the_promise(stm32_folder: Path, promise: Promise) -> No
     assert_kept(run(stm32_folder, "stm32f103", promise.fault), promise)
 
 
-@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040"])
+@pytest.mark.parametrize("target", ["host", "atmega328p", "rp2040", "stm32f103"])
 @pytest.mark.parametrize("writes", [5, 12])
 def test_a_dip_of_the_supply_while_it_is_set_up(
-    host_folder: Path, avr_folder: Path, pico_folder: Path, target: str, writes: int
+    request: pytest.FixtureRequest, target: str, writes: int
 ) -> None:
     """How fast a board tries again decides whether it sees a dead bus or a reset sensor."""
-    folder = {"host": host_folder, "atmega328p": avr_folder, "rp2040": pico_folder}[target]
+    folder = folder_of(request, target)
     result = run(folder, target, f"brown-out-write={writes}@0")
     report = result.fault_report
     assert report is not None
@@ -168,8 +174,7 @@ def test_a_dip_of_the_supply_while_it_is_set_up(
 def test_a_foreign_part_is_refused_and_does_not_recover(
     request: pytest.FixtureRequest, target: str
 ) -> None:
-    names = {"host": "host", "atmega328p": "avr", "rp2040": "pico", "stm32f103": "stm32"}
-    folder = request.getfixturevalue(f"{names[target]}_folder")
+    folder = folder_of(request, target)
     result = run(folder, target, "wrong-identity=0x12")
     assert result.fault_report is not None
     assert result.fault_report.texts == ("MPU-6050 refused: WHO_AM_I is 0x12",)
