@@ -64,6 +64,10 @@ def compiled(folder: Path, code: Path) -> Any:
     return module
 
 
+def two_bytes(number: int) -> np.ndarray:
+    return np.frombuffer(number.to_bytes(2, "little"), dtype=np.uint8)
+
+
 class Bench:
     """The parts of one design's firmware; its memory is erased.
 
@@ -138,16 +142,16 @@ class Bench:
         found = self.c.hk_store_valid(store)
         return float(self.c.hk_parameter_get(parameters, place)) if found else None
 
-    def make_generation(self, slot: int, generation: int) -> None:
-        """Make a valid record one of another generation."""
+    def make_generation(self, slot: int, generation: int, end: int | None = None) -> None:
+        """Make a valid record one of another generation; with `end`, one with another end."""
         record = self.memory[slot * SLOT_BYTES :]
-        number = np.frombuffer(generation.to_bytes(2, "little"), dtype=np.uint8)
-        values, end = self.c.HK_STORE_VALUES_AT, self.c.HK_STORE_CRC_AT
-        record[values - 2 : values] = record[end + 2 : end + 4] = number
+        values_at, crc_at = self.c.HK_STORE_VALUES_AT, self.c.HK_STORE_CRC_AT
+        record[values_at - 2 : values_at] = two_bytes(generation)
+        record[crc_at + 2 : crc_at + 4] = two_bytes(generation if end is None else end)
         crc = self.c.HK_CRC_START
-        for byte in record[:end]:
+        for byte in record[:crc_at]:
             crc = self.c.hk_crc(crc, int(byte))
-        record[end : end + 2] = np.frombuffer(crc.to_bytes(2, "little"), dtype=np.uint8)
+        record[crc_at : crc_at + 2] = two_bytes(crc)
 
     # --- Parameters ---------------------------------------------------------------------------
 
