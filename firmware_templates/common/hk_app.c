@@ -186,6 +186,9 @@ static void send_due(hk_app_t *app)
             return;
         }
         hk_stream_sent(&app->stream, which);
+#if HK_SIGNING
+        break; /* a signature takes its time: look after the sensor first */
+#endif
     }
     if (app->version_wanted && hk_telemetry_version(app)) {
         app->version_wanted = false;
