@@ -35,7 +35,6 @@ class Promise:
     errors: tuple[int, int] = (0, 0)  # from, to
     repeated: int = 0
     spoilt: tuple[int, int] = (0, 0)  # from, to
-    or_texts: tuple[str, ...] = ()  # of a board that tries less often
 
     def __str__(self) -> str:
         return self.fault
@@ -117,12 +116,12 @@ def folder_of(request: pytest.FixtureRequest, target: str) -> Path:
     return folder
 
 
-def assert_kept(result: EmulationResult, promise: Promise, *, seldom: bool = False) -> None:
+def assert_kept(result: EmulationResult, promise: Promise) -> None:
     report = result.fault_report
     assert report is not None
     assert report.struck == 1
     assert report.recovered
-    assert report.texts == (promise.or_texts if seldom and promise.or_texts else promise.texts)
+    assert report.texts == promise.texts
     assert report.restarts == promise.restarts
     assert report.repeated == promise.repeated
     assert promise.spoilt[0] <= report.spoilt <= promise.spoilt[1]
@@ -139,7 +138,7 @@ def test_host_keeps_the_promise(host_folder: Path, promise: Promise) -> None:
 
 @pytest.mark.parametrize("promise", PROMISES, ids=str)
 def test_avr_keeps_the_promise(avr_folder: Path, promise: Promise) -> None:
-    assert_kept(run(avr_folder, "atmega328p", promise.fault), promise, seldom=True)
+    assert_kept(run(avr_folder, "atmega328p", promise.fault), promise)
 
 
 @pytest.mark.parametrize("promise", PROMISES, ids=str)

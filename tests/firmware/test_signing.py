@@ -2,6 +2,7 @@
 
 import ctypes
 import hashlib
+import itertools
 import random
 import subprocess
 from dataclasses import replace
@@ -181,7 +182,7 @@ def test_from_the_secret_on_every_message_is_signed(folder: Path) -> None:
     assert heard.decoder.bad == heard.decoder.lost_frames == 0
     stamps = timestamps(heard)
     assert stamps[0] >= TODAY
-    assert all(b > a for a, b in zip(stamps, stamps[1:], strict=False))
+    assert all(b > a for a, b in itertools.pairwise(stamps))
     samples = [f for f in heard.frames if f.name == "TILT_SAMPLE" and f.raw[2] & SIGNED]
     stamped = timestamps(Heard(frames=[samples[0], samples[-1]], decoder=heard.decoder))
     passed_us = samples[-1].message.time_usec - samples[0].message.time_usec
@@ -386,7 +387,7 @@ def test_a_new_secret_does_not_take_time_back(folder: Path, locked: bytes) -> No
     ground = Signer(SECRET, TODAY + DAY)
     ground.setup(0.5, OTHER, 5)
     stamps = timestamps(ground.run(folder, stimulus(200), store=locked))
-    assert all(b > a for a, b in zip(stamps, stamps[1:], strict=False))
+    assert all(b > a for a, b in itertools.pairwise(stamps))
 
 
 def test_the_way_back_to_the_design_leaves_the_secret(folder: Path, locked: bytes) -> None:
