@@ -181,7 +181,8 @@ static void send_due(hk_app_t *app)
     uint8_t which;
 
     hk_stream_time(&app->stream, (uint32_t)app->now_us);
-    while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+    for (which = hk_stream_next(&app->stream); which != HK_NO_STREAM;
+         which = hk_stream_next(&app->stream)) {
         if (!hk_telemetry_stream(app, which)) {
             return;
         }
