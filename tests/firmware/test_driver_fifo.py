@@ -50,7 +50,8 @@ def spoilt_samples(report: Report) -> np.ndarray:
     """
     counts = expected_counts(FEELS, CODE)
     place = {tuple(row): i for i, row in enumerate(counts.accel.tolist())}
-    rows = [place[tuple(row)] for row in report.samples[:, :3].tolist()]
+    rows = [place.get(tuple(row), -1) for row in report.samples[:, :3].tolist()]
+    assert -1 not in rows, f"sample {rows.index(-1)} does not begin like a row"
     assert (np.diff(rows) > 0).all()
     return np.flatnonzero((report.samples[:, 4:] != counts.gyro[rows]).any(axis=1))
 
