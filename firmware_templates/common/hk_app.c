@@ -181,11 +181,15 @@ static void send_due(hk_app_t *app)
     uint8_t which;
 
     hk_stream_time(&app->stream, (uint32_t)app->now_us);
-    while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+    for (which = hk_stream_next(&app->stream); which != HK_NO_STREAM;
+         which = hk_stream_next(&app->stream)) {
         if (!hk_telemetry_stream(app, which)) {
             return;
         }
         hk_stream_sent(&app->stream, which);
+#if HK_SIGNING
+        break; /* a signature takes its time: look after the sensor first */
+#endif
     }
     if (app->version_wanted && hk_telemetry_version(app)) {
         app->version_wanted = false;
@@ -205,7 +209,6 @@ void hk_app_init(hk_app_t *app)
     app->system_status = MAV_STATE_BOOT;
     hk_settings_init(app);
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
-    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
     hk_link_init(&app->link, app->parameters.system_id);
     hk_stream_init(&app->stream, (uint32_t)app->now_us);

@@ -186,6 +186,9 @@ static void send_due(hk_app_t *app)
             return;
         }
         hk_stream_sent(&app->stream, which);
+#if HK_SIGNING
+        break; /* a signature takes its time: look after the sensor first */
+#endif
     }
     if (app->version_wanted && hk_telemetry_version(app)) {
         app->version_wanted = false;
@@ -205,7 +208,6 @@ void hk_app_init(hk_app_t *app)
     app->system_status = MAV_STATE_BOOT;
     hk_settings_init(app);
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
-    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
     hk_link_init(&app->link, app->parameters.system_id);
     hk_stream_init(&app->stream, (uint32_t)app->now_us);

@@ -5,14 +5,19 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hk_design.h"
 #include "hk_mavlink.h"
+#include "hk_signing.h"
 
-/* Bytes of a frame around its payload. */
-#define HK_FRAME_OVERHEAD 12U
+/* Bytes of a frame around its payload, at most. */
+#define HK_FRAME_OVERHEAD (12U + HK_SIGNING * HK_SIGNATURE_BYTES)
 
 typedef struct {
     uint8_t system_id;
     uint8_t sequence; /* of the next frame; only frames that are queued are counted */
+#if HK_SIGNING
+    hk_signing_t signing; /* begins with hk_signing_init */
+#endif
 } hk_link_t;
 
 void hk_link_init(hk_link_t *link, uint8_t system_id);
