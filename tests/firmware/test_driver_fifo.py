@@ -50,7 +50,8 @@ def spoilt_samples(report: Report) -> np.ndarray:
     """
     counts = expected_counts(FEELS, CODE)
     place = {tuple(row): i for i, row in enumerate(counts.accel.tolist())}
-    rows = [place[tuple(row)] for row in report.samples[:, :3].tolist()]
+    rows = [place.get(tuple(row), -1) for row in report.samples[:, :3].tolist()]
+    assert -1 not in rows, f"sample {rows.index(-1)} does not begin like a row"
     assert (np.diff(rows) > 0).all()
     return np.flatnonzero((report.samples[:, 4:] != counts.gyro[rows]).any(axis=1))
 
@@ -216,7 +217,7 @@ def test_a_packet_of_another_length_is_a_misaligned_one(fifo: Path) -> None:
 def test_bytes_that_are_lost_are_found_whenever_they_are_lost(
     fifo: Path, every_ms: int, spoilt: int
 ) -> None:
-    """Twelve times; some of them within the reading itself, behind the temperature."""
+    """Twelve times; up to three of them within the reading itself, behind the temperature."""
     commands = [c for _ in range(12) for c in (fault("misaligned", 1), f"run {every_ms}")]
     report = run(fifo, FEELS, "run 400", *commands, "run 900")
     found = spoilt_samples(report)
@@ -287,7 +288,7 @@ def test_the_other_rates_work_in_fifo_mode(tmp_path: Path) -> None:
         code = design(rate_hz=rate_hz, low_pass_setting=low_pass)
         feels = replace(wild(200), settle_samples=settle_samples(code.sensor, rate_hz))
         program = build(tmp_path / f"at{rate_hz:g}", code, fifo=True)
-        report = run(program, feels, f"run {round(400 + 55000 / rate_hz)}")
+        report = run(program, feels, f"run {round(400 + 50000 / rate_hz)}")
         rows = rows_of(report, feels)
         assert rows.tolist() == list(range(len(rows)))
         assert len(rows) >= 40
