@@ -25,6 +25,17 @@ void hk_link_init(hk_link_t *link, uint8_t system_id);
 /* Whether a frame with so much payload would find room. */
 bool hk_link_has_room(uint8_t payload_bytes);
 
+/* Whether there is time to answer: not in a turn of the main loop in which a signature was checked. */
+static inline bool hk_link_has_time(const hk_link_t *link)
+{
+#if HK_SIGNING
+    return !link->signing.checked;
+#else
+    (void)link;
+    return true;
+#endif
+}
+
 /* Queue a message. Returns false, and queues nothing, if the link has no room. */
 bool hk_link_send(hk_link_t *link, uint16_t id, uint8_t crc_extra, const void *payload,
                   uint8_t length);

@@ -9,7 +9,7 @@
 typedef struct {
     uint32_t state[8];
     uint32_t word[16]; /* the block that is being filled */
-    uint32_t count;    /* bytes so far; at most 2^29 - 1 */
+    uint16_t count;    /* bytes so far */
 } hk_sha256_t;
 
 void hk_sha256_init(hk_sha256_t *sha);

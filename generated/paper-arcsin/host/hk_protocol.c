@@ -171,6 +171,9 @@ bool hk_protocol_poll(hk_app_t *app)
 #endif
     }
     if (app->arrived) {
+        if (!hk_link_has_time(&app->link)) {
+            return true;
+        }
         if (!hk_link_has_room(HK_ANSWER_BYTES)) {
             return false; /* the link makes room by and by */
         }

@@ -104,8 +104,14 @@ void hk_signing_set(hk_signing_t *signing, const uint8_t secret[HK_SECRET_BYTES]
     take_forward(signing, timestamp);
 }
 
+void hk_signing_turn(hk_signing_t *signing)
+{
+    signing->worked = false;
+    signing->checked = false;
+}
+
 /* The beginning of the hash over the secret and the frame. */
-static void hash_of(const hk_signing_t *signing, const hk_signed_frame_t *frame, uint8_t *hash)
+static void hash_of(hk_signing_t *signing, const hk_signed_frame_t *frame, uint8_t *hash)
 {
     uint8_t whole[HK_SHA256_BYTES];
     hk_sha256_t sha;
@@ -117,6 +123,7 @@ static void hash_of(const hk_signing_t *signing, const hk_signed_frame_t *frame,
     hk_sha256_add(&sha, frame->tail, HK_HASH_AT);
     hk_sha256_end(&sha, whole);
     (void)memcpy(hash, whole, HK_HASH_BYTES);
+    signing->worked = true;
 }
 
 void hk_signing_sign(hk_signing_t *signing, const hk_signed_frame_t *frame, uint32_t now_us)
@@ -170,13 +177,14 @@ static void remember(hk_signing_t *signing, uint8_t place, const hk_signed_frame
 }
 
 /* In a time that does not tell how much of it is right. */
-static bool is_signed(const hk_signing_t *signing, const hk_signed_frame_t *frame)
+static bool is_signed(hk_signing_t *signing, const hk_signed_frame_t *frame)
 {
     uint8_t hash[HK_HASH_BYTES];
     uint8_t wrong = 0U;
     uint8_t i;
 
     hash_of(signing, frame, hash);
+    signing->checked = true;
     for (i = 0U; i < HK_HASH_BYTES; i++) {
         wrong = (uint8_t)(wrong | (hash[i] ^ frame->tail[HK_HASH_AT + i]));
     }

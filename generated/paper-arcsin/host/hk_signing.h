@@ -42,6 +42,8 @@ typedef struct {
     uint32_t since_us;  /* when it was taken forward last */
     bool active;        /* there is a secret */
     bool unsaved;       /* what is kept is not what is stored */
+    bool worked;        /* something was signed or checked in this turn of the main loop */
+    bool checked;       /* namely checked: nothing is sent in the same turn */
     uint8_t streams;    /* senders so far */
     hk_signed_stream_t stream[HK_SIGNED_STREAMS];
 } hk_signing_t;
@@ -52,6 +54,10 @@ void hk_signing_init(hk_signing_t *signing, const hk_signing_kept_t *kept, uint3
 /* Take another secret; zeros are none. The timestamp does not go back for it. */
 void hk_signing_set(hk_signing_t *signing, const uint8_t secret[HK_SECRET_BYTES],
                     uint64_t timestamp);
+
+/* A turn of the main loop begins: a signature takes the time of half a sample on a small board, so
+ * there should be one in a turn. */
+void hk_signing_turn(hk_signing_t *signing);
 
 /* Set the signature of a frame that is sent. */
 void hk_signing_sign(hk_signing_t *signing, const hk_signed_frame_t *frame, uint32_t now_us);

@@ -8,6 +8,11 @@
 
 #if HK_SIGNING
 
+#ifdef __AVR__
+/* Expressions that are put together late need more registers than there are: a tenth slower. */
+#pragma GCC optimize("no-tree-ter")
+#endif
+
 #include <string.h>
 
 #include "hk_flash.h"
@@ -113,16 +118,24 @@ HK_WITHIN uint32_t sigma_1(uint32_t x)
     return bytes_2(one ^ right_1(two)) ^ (bytes_1(two) & 0x003FFFFFU);
 }
 
-/* Section 6.2.2, step 3, in two parts. Of a..h at v, the next eight stand at v - 1: all but two keep
- * their places, h is left behind, d becomes e. */
-HK_APART uint32_t first_sum(const uint32_t *v)
+/* Section 6.2.2, step 3. Of a..h at v, the next eight stand at v - 1: all but two keep their places,
+ * h is left behind, d becomes e. */
+HK_APART void round_at(uint32_t *v, uint32_t sum)
 {
-    return (v[6] ^ (v[4] & (v[5] ^ v[6]))) + sum_1(v[4]) + v[7];
-}
+    uint32_t chosen = v[5] ^ v[6];
 
-HK_APART uint32_t second_sum(const uint32_t *v)
-{
-    return ((v[0] & (v[1] ^ v[2])) ^ (v[1] & v[2])) + sum_0(v[0]);
+    sum += v[7];
+    chosen &= v[4];
+    chosen ^= v[6];
+    sum += chosen;
+    sum += sum_1(v[4]);
+    v[3] += sum;
+    chosen = v[1] ^ v[2];
+    chosen &= v[0];
+    chosen ^= v[1] & v[2];
+    sum += chosen;
+    sum += sum_0(v[0]);
+    v[-1] = sum;
 }
 
 /* Section 6.2.2, step 1: the words of the next 16 rounds, in the place of the last. */
@@ -131,8 +144,12 @@ HK_APART void next_words(uint32_t word[16])
     uint8_t i;
 
     for (i = 0U; i < 16U; i++) {
-        word[i] += sigma_0(word[(i + 1U) & 15U]) + word[(i + 9U) & 15U]
-                   + sigma_1(word[(i + 14U) & 15U]);
+        uint32_t sum = word[i];
+
+        sum += sigma_0(word[(i + 1U) & 15U]);
+        sum += word[(i + 9U) & 15U];
+        sum += sigma_1(word[(i + 14U) & 15U]);
+        word[i] = sum;
     }
 }
 
@@ -153,10 +170,7 @@ HK_APART void take_block(hk_sha256_t *sha)
         }
         at = first;
         for (i = 0U; i < HK_GROUP_ROUNDS; i++) {
-            const uint32_t sum = first_sum(at) + sha->word[i] + hk_flash_u32(k);
-
-            at[3] += sum;
-            at[-1] = second_sum(at) + sum;
+            round_at(at, sha->word[i] + hk_flash_u32(k));
             at--;
             k++;
         }
@@ -177,7 +191,7 @@ void hk_sha256_init(hk_sha256_t *sha)
 }
 
 /* The highest byte of a word comes first. */
-static void take_byte(hk_sha256_t *sha, uint8_t byte)
+HK_APART void take_byte(hk_sha256_t *sha, uint8_t byte)
 {
     const uint8_t place = (uint8_t)(sha->count % HK_BLOCK_BYTES);
 
@@ -200,7 +214,7 @@ void hk_sha256_add(hk_sha256_t *sha, const uint8_t *bytes, uint16_t count)
 /* Section 5.1.1: a one, zeros, and the number of bits. */
 void hk_sha256_end(hk_sha256_t *sha, uint8_t hash[HK_SHA256_BYTES])
 {
-    const uint32_t bits = 8U * sha->count;
+    const uint32_t bits = 8UL * sha->count;
     uint8_t i;
 
     take_byte(sha, 0x80U);

@@ -175,7 +175,7 @@ static void announce(hk_app_t *app)
             needed = (uint8_t)(needed + (HK_VALUE_BYTES + HK_FRAME_OVERHEAD));
         }
     }
-    if (sample_waits || hk_hal_transmit_room() < needed) {
+    if (sample_waits || !hk_link_has_time(&app->link) || hk_hal_transmit_room() < needed) {
         return;
     }
     for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
