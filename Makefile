@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+PARALLEL := -n auto --dist worksteal
 NODE   := hostkit/emulation/avr8js hostkit/emulation/rp2040js
 
 .DEFAULT_GOAL := help
@@ -16,14 +17,14 @@ setup:             ## make .venv, install hostkit and the toolchains; safe to re
 demo: setup        ## the whole loop without hardware, ending in a report
 	$(BIN)/hostkit demo --out demo
 
-test: setup        ## all tests
-	$(BIN)/python -m pytest
+test: setup        ## all tests, on every core
+	$(BIN)/python -m pytest $(PARALLEL)
 
 check: setup       ## format, lint, types, tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(PARALLEL)
 
 goldens: setup     ## rewrite generated/; read the diff before committing
 	$(BIN)/python -m pytest tests/golden --update-golden

@@ -29,6 +29,7 @@ TARGET_TOOLS = {
     "atmega328p": ("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld"),
     "rp2040": PICO_TOOLS,
     "stm32f103": ("make", "arm-none-eabi-gcc", "gcc", "unicorn"),
+    "linux": ("gcc", "make"),
     "spartan3adsp": ("ghdl",),
 }
 

@@ -213,7 +213,6 @@ void hk_app_init(hk_app_t *app)
     app->system_status = MAV_STATE_BOOT;
     hk_settings_init(app);
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
-    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
     hk_link_init(&app->link, app->parameters.system_id);
     hk_stream_init(&app->stream, (uint32_t)app->now_us);

@@ -9,7 +9,6 @@ int main(void)
     hk_hal_init();
     hk_app_init(&app);
     for (;;) {
-        hk_hal_watchdog_feed();
         if (hk_app_poll(&app)) {
             hk_hal_idle();
         }

@@ -16,8 +16,8 @@ from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 DESIGN = design()
 PEERS = tuple(one for one in CONTENDERS if one.peer)
-TOLERANCE_DEG = 0.01
-"""Measured: up to 0.0012 deg."""
+TOLERANCE_DEG = 0.001
+"""Measured on the host: up to 0.0002 deg."""
 
 
 def swinging(samples: int = 2000) -> np.ndarray:

@@ -57,6 +57,7 @@ def test_every_row_arrives_once_with_the_counts_of_the_model(stm32_folder: Path)
     assert progress[-1] == len(feels)
     assert run.cost_unit == "instructions"
     assert 100 < run.cycles_mean <= run.cycles_max < 5000
+    assert run.cycles_max - run.cycles_mean < 5  # without those of interrupts
     assert 200 < run.stack_bytes < 2048
     steps = {b - a for a, b in pairwise(s.time_usec for s in hear(run).samples)}
     assert steps <= {9999, 10000, 10001}  # the interrupt takes the time
@@ -299,6 +300,36 @@ def test_the_clock_goes_on_while_interrupts_are_held(code: Path, tmp_path: Path)
     machine = machine_of(code, tmp_path)
     machine.run(0.1)
     assert bytes(machine.link) == b"\x01"
+
+
+MARKER = """
+#include "hk_hal.h"
+int main(void)
+{
+    static const uint8_t bytes[200];
+    volatile uint32_t turns;
+    hk_hal_init();
+    (void)hk_hal_transmit(bytes, COUNT);
+    hk_hal_mark_begin();
+    for (turns = 0U; turns < 20000U; turns++) {
+    }
+    hk_hal_mark_end();
+    for (;;) {
+        hk_hal_idle();
+    }
+}
+"""
+
+
+def test_instructions_of_interrupts_are_not_counted(code: Path, tmp_path: Path) -> None:
+    counts = []
+    for sent in ("1U", "200U"):
+        program(code, MARKER.replace("COUNT", sent))
+        machine = machine_of(code, tmp_path)
+        machine.run(0.02)
+        counts.append(machine.segments.total)
+    assert counts[0] > 20_000
+    assert abs(counts[0] - counts[1]) < 10
 
 
 # --- what is missing -----------------------------------------------------------------------------

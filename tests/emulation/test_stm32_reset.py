@@ -137,9 +137,9 @@ def test_a_fault_ends_a_run_and_is_named(code: Path, tmp_path: Path) -> None:
 
 
 def test_resets_are_counted_in_a_run(code: Path) -> None:
-    changed(code / "main.c", "hk_hal_watchdog_feed();", "")
+    changed(code / RESET, "    IWDG_KR = IWDG_KR_RELOAD;\n", "")
     stm32_board.build(code)
-    run = stm32_board.run(code, stimulus(200))
+    run = stm32_board.run(code, stimulus(400))
     assert dict(run.faults)["resets"] >= 1
 
 

@@ -15,7 +15,7 @@ from hostkit.emulation.make import make
 from hostkit.errors import BuildError
 from hostkit.records import FilterDesign
 
-FLASH_LIMIT, RAM_LIMIT = 24 * 1024, 2048
+FLASH_LIMIT, RAM_LIMIT = 26 * 1024, 2048
 FLASH_START, STORE_START, RAM_START, RAM_END = 0x10000000, 0x101FE000, 0x20000000, 0x20042000
 
 

@@ -101,9 +101,42 @@ static void take_ping(hk_app_t *app)
     }
 }
 
+#if HK_SIGNING
+/* Whether a message may be looked at. One that may not is counted like one that was spoilt. */
+static bool is_admitted(hk_app_t *app)
+{
+    const hk_signed_frame_t frame = {.header = app->receiver.header,
+                                     .payload = app->receiver.payload,
+                                     .tail = app->receiver.tail};
+
+    if (!app->link.signing.active
+        || (app->receiver.length <= HK_RECEIVE_BYTES
+            && hk_signing_accepts(&app->link.signing, &frame, hk_hal_time_us()))) {
+        return true;
+    }
+    app->receiver.errors++;
+    return false;
+}
+
+static void take_secret(hk_app_t *app)
+{
+    mavlink_setup_signing_t message;
+
+    HK_TAKE(app, SETUP_SIGNING, &message);
+    if (is_for_us(app, message.target_system, message.target_component)) {
+        hk_signing_set(&app->link.signing, message.secret_key, message.initial_timestamp);
+    }
+}
+#endif
+
 static void answer(hk_app_t *app)
 {
     switch (app->receiver.id) {
+#if HK_SIGNING
+    case MAVLINK_MSG_ID_SETUP_SIGNING:
+        take_secret(app);
+        break;
+#endif
     case MAVLINK_MSG_ID_PARAM_SET:
         take_set(app);
         break;
@@ -133,8 +166,14 @@ bool hk_protocol_poll(hk_app_t *app)
     while (!app->arrived && left > 0U && hk_hal_receive(&byte)) {
         app->arrived = hk_receiver_take(&app->receiver, byte);
         left--;
+#if HK_SIGNING
+        app->arrived = app->arrived && is_admitted(app);
+#endif
     }
     if (app->arrived) {
+        if (!hk_link_has_time(&app->link)) {
+            return true;
+        }
         if (!hk_link_has_room(HK_ANSWER_BYTES)) {
             return false; /* the link makes room by and by */
         }

@@ -7,11 +7,8 @@
 #include "hk_design.h"
 #include "hk_hal.h"
 
-#if HK_SIGNING
-#error "messages are not signed yet: generate without signing"
-#endif
-
 #define HK_HEADER_BYTES 10U
+#define HK_CRC_BYTES    2U
 
 void hk_link_init(hk_link_t *link, uint8_t system_id)
 {
@@ -43,15 +40,45 @@ static uint16_t checksum(uint16_t crc, const uint8_t *bytes, uint8_t count)
     return crc;
 }
 
+/* The flags that one must understand. */
+static uint8_t flags_of(const hk_link_t *link)
+{
+#if HK_SIGNING
+    return link->signing.active ? HK_SIGNED : 0U;
+#else
+    (void)link;
+    return 0U;
+#endif
+}
+
+/* Sign a frame whose checksum is set, if frames are signed. Returns the bytes behind the payload. */
+static uint8_t finish(hk_link_t *link, const uint8_t *header, const uint8_t *payload, uint8_t *tail)
+{
+#if HK_SIGNING
+    const hk_signed_frame_t frame = {.header = header, .payload = payload, .tail = tail};
+
+    if (link->signing.active) {
+        hk_signing_sign(&link->signing, &frame, hk_hal_time_us());
+        return HK_TAIL_BYTES;
+    }
+#else
+    (void)link;
+    (void)header;
+    (void)payload;
+    (void)tail;
+#endif
+    return HK_CRC_BYTES;
+}
+
 bool hk_link_send(hk_link_t *link, uint16_t id, uint8_t crc_extra, const void *payload,
                   uint8_t length)
 {
     const uint8_t sent = trimmed(payload, length);
     const uint8_t header[HK_HEADER_BYTES] = {
-        MAVLINK_STX,       sent, 0U, 0U, link->sequence, link->system_id, HK_COMPONENT_ID,
+        MAVLINK_STX, sent, flags_of(link), 0U, link->sequence, link->system_id, HK_COMPONENT_ID,
         (uint8_t)(id & 0xFFU), (uint8_t)(id >> 8), 0U};
     uint16_t crc;
-    uint8_t end[2];
+    uint8_t end[HK_SIGNING ? HK_TAIL_BYTES : HK_CRC_BYTES];
 
     if (!hk_link_has_room(sent)) {
         return false;
@@ -62,5 +89,5 @@ bool hk_link_send(hk_link_t *link, uint16_t id, uint8_t crc_extra, const void *p
     end[1] = (uint8_t)(crc >> 8);
     link->sequence++;
     return hk_hal_transmit(header, sizeof header) && hk_hal_transmit(payload, sent)
-           && hk_hal_transmit(end, sizeof end);
+           && hk_hal_transmit(end, finish(link, header, payload, end));
 }

@@ -22,11 +22,15 @@ enum {
     AT_PAYLOAD
 };
 
-#define HK_SIGNED          0x01U
-#define HK_SIGNATURE_BYTES 13U
+#if HK_SIGNING
+#define HK_LISTENED_SIGNING(X) X(SETUP_SIGNING)
+#else
+#define HK_LISTENED_SIGNING(X)
+#endif
 
 /* X(name) for every message that is listened to. */
 #define HK_LISTENED(X) \
+    HK_LISTENED_SIGNING(X) \
     X(PARAM_SET) \
     X(PARAM_REQUEST_READ) \
     X(PARAM_REQUEST_LIST) \
@@ -60,6 +64,9 @@ void hk_receiver_init(hk_receiver_t *receiver)
 
 static void take_header(hk_receiver_t *receiver, uint16_t place, uint8_t byte)
 {
+#if HK_SIGNING
+    receiver->header[place] = byte;
+#endif
     switch (place) {
     case AT_LENGTH:
         receiver->length = byte;
@@ -92,6 +99,35 @@ static void take_header(hk_receiver_t *receiver, uint16_t place, uint8_t byte)
     }
 }
 
+/* The checksum is right. Returns whether there is nothing more to come: the signature may be. */
+static bool end_payload(hk_receiver_t *receiver, uint16_t crc)
+{
+#if HK_SIGNING
+    receiver->header[AT_MAGIC] = MAVLINK_STX;
+    receiver->tail[0] = (uint8_t)(crc & 0xFFU);
+    receiver->tail[1] = (uint8_t)(crc >> 8);
+    receiver->wanted = true;
+    return receiver->to_skip == 0U;
+#else
+    (void)receiver;
+    (void)crc;
+    return true;
+#endif
+}
+
+/* Take a byte behind the checksum. Returns whether a frame is whole and looked at. */
+static bool take_signature(hk_receiver_t *receiver, uint8_t byte)
+{
+    receiver->to_skip--;
+#if HK_SIGNING
+    receiver->tail[HK_TAIL_BYTES - 1U - receiver->to_skip] = byte;
+    return receiver->to_skip == 0U && receiver->wanted;
+#else
+    (void)byte;
+    return false;
+#endif
+}
+
 /* The checksum has come whole. Returns whether the frame is to be looked at. */
 static bool end_frame(hk_receiver_t *receiver, uint8_t crc_high)
 {
@@ -99,6 +135,9 @@ static bool end_frame(hk_receiver_t *receiver, uint8_t crc_high)
     uint16_t wanted;
 
     receiver->place = AT_MAGIC;
+#if HK_SIGNING
+    receiver->wanted = false;
+#endif
     receiver->to_skip = (receiver->flags & HK_SIGNED) != 0U ? HK_SIGNATURE_BYTES : 0U;
     if ((receiver->flags & (uint8_t)~HK_SIGNED) != 0U || receiver->unwanted != 0U
         || !seed_of(receiver->id, &seed)) {
@@ -111,7 +150,7 @@ static bool end_frame(hk_receiver_t *receiver, uint8_t crc_high)
         return false;
     }
     receiver->frames++;
-    return true;
+    return end_payload(receiver, wanted);
 }
 
 /* Take a byte of a frame behind its magic. Returns whether the frame is whole and looked at. */
@@ -137,8 +176,7 @@ static bool take_byte(hk_receiver_t *receiver, uint8_t byte)
 bool hk_receiver_take(hk_receiver_t *receiver, uint8_t byte)
 {
     if (receiver->to_skip > 0U) {
-        receiver->to_skip--;
-        return false;
+        return take_signature(receiver, byte);
     }
     if (receiver->place == AT_MAGIC) {
         receiver->place = byte == MAVLINK_STX ? AT_LENGTH : AT_MAGIC;

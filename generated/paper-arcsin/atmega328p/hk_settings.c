@@ -36,11 +36,34 @@ static void take_over(hk_app_t *app)
     app->retuned = hk_parameters_retuned(&app->parameters);
 }
 
+#if HK_SIGNING
+static void init_signing(hk_app_t *app)
+{
+    hk_signing_kept_t kept;
+
+    hk_store_signing(&app->store, &kept);
+    hk_store_keep(&app->store, &app->link.signing.kept);
+    hk_signing_init(&app->link.signing, &kept, (uint32_t)app->now_us);
+}
+
+/* A secret is stored at once, and so is the bound of the timestamp, which changes rarely. */
+static void keep_signing(hk_app_t *app)
+{
+    if (app->link.signing.unsaved && !hk_store_saving(&app->store)) {
+        app->link.signing.unsaved = false;
+        hk_settings_save(app);
+    }
+}
+#endif
+
 void hk_settings_init(hk_app_t *app)
 {
     hk_parameters_init(&app->parameters);
     hk_store_init(&app->store);
     (void)hk_store_load(&app->store, &app->parameters);
+#if HK_SIGNING
+    init_signing(app);
+#endif
     take_over(app);
     app->announce = 0U;
     app->list_place = HK_NO_PARAMETER;
@@ -152,7 +175,7 @@ static void announce(hk_app_t *app)
             needed = (uint8_t)(needed + (HK_VALUE_BYTES + HK_FRAME_OVERHEAD));
         }
     }
-    if (sample_waits || hk_hal_transmit_room() < needed) {
+    if (sample_waits || !hk_link_has_time(&app->link) || hk_hal_transmit_room() < needed) {
         return;
     }
     for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
@@ -183,6 +206,9 @@ static void go_on_listing(hk_app_t *app)
 
 static void keep(hk_app_t *app)
 {
+#if HK_SIGNING
+    keep_signing(app);
+#endif
     switch (hk_store_poll(&app->store)) {
     case HK_STORE_SAVED:
         hk_command_end(app, HK_LATE_STORAGE, MAV_RESULT_ACCEPTED);

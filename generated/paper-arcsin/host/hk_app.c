@@ -175,21 +175,29 @@ static void poll_sensor(hk_app_t *app)
 
 /* --- The link ------------------------------------------------------------------------------- */
 
-/* Send what is due, the most important first, as long as there is room. */
-static void send_due(hk_app_t *app)
+/* Send what is due, the most important first, as long as there is room. Returns whether it has
+ * stopped only because a signature takes its time: the sensor is to be looked after before. */
+static bool send_due(hk_app_t *app)
 {
     uint8_t which;
 
     hk_stream_time(&app->stream, (uint32_t)app->now_us);
-    while ((which = hk_stream_next(&app->stream)) != HK_NO_STREAM) {
+    for (which = hk_stream_next(&app->stream); which != HK_NO_STREAM;
+         which = hk_stream_next(&app->stream)) {
+#if HK_SIGNING
+        if (app->link.signing.worked) {
+            return true;
+        }
+#endif
         if (!hk_telemetry_stream(app, which)) {
-            return;
+            return false;
         }
         hk_stream_sent(&app->stream, which);
     }
     if (app->version_wanted && hk_telemetry_version(app)) {
         app->version_wanted = false;
     }
+    return false;
 }
 
 /* --- The whole ------------------------------------------------------------------------------ */
@@ -205,7 +213,6 @@ void hk_app_init(hk_app_t *app)
     app->system_status = MAV_STATE_BOOT;
     hk_settings_init(app);
     hk_mpu6050_init(&app->sensor, (uint32_t)app->now_us);
-    hk_filter_defaults(&app->filter.settings);
     hk_filter_init(&app->filter);
     hk_link_init(&app->link, app->parameters.system_id);
     hk_stream_init(&app->stream, (uint32_t)app->now_us);
@@ -222,6 +229,9 @@ bool hk_app_poll(hk_app_t *app)
 
     advance_clock(app);
     hk_hal_watchdog_feed();
+#if HK_SIGNING
+    hk_signing_turn(&app->link.signing);
+#endif
     more = hk_protocol_poll(app);
     hk_settings_poll(app);
     poll_sensor(app);
@@ -229,7 +239,7 @@ bool hk_app_poll(hk_app_t *app)
         end_calibration(app, false);
     }
     tell_status(app);
-    send_due(app);
+    more = send_due(app) || more;
     hk_notice_poll(app);
     hk_command_poll(app);
     app->load.paused = hk_mpu6050_waiting(&app->sensor) && !more;

@@ -12,7 +12,7 @@
 #include "hk_design.h"
 #include "hk_flash.h"
 
-#define HK_LAYOUT 1U
+#define HK_LAYOUT (HK_SIGNING ? 2U : 1U)
 #define HK_TRIES  3U
 #define HK_PIECE  8U /* bytes that are compared at once */
 
@@ -115,12 +115,28 @@ bool hk_store_load(const hk_store_t *store, hk_parameters_t *parameters)
     return true;
 }
 
+#if HK_SIGNING
+void hk_store_signing(const hk_store_t *store, hk_signing_kept_t *kept)
+{
+    (void)memset(kept, 0, sizeof *kept);
+    if (store->valid) {
+        (void)memcpy(kept, &store->image[HK_STORE_SIGNING_AT], sizeof *kept);
+    }
+}
+
+void hk_store_keep(hk_store_t *store, const hk_signing_kept_t *kept)
+{
+    store->signing = kept;
+}
+#endif
+
 bool hk_store_saving(const hk_store_t *store)
 {
     return store->state != HK_STORE_IDLE;
 }
 
-static void put_values(uint8_t *values, const hk_parameters_t *parameters)
+/* All that a record holds between its head and its checksum. */
+static void put_values(const hk_store_t *store, uint8_t *values, const hk_parameters_t *parameters)
 {
     uint8_t place;
 
@@ -129,6 +145,11 @@ static void put_values(uint8_t *values, const hk_parameters_t *parameters)
 
         (void)memcpy(&values[4U * place], &value, sizeof value);
     }
+#if HK_SIGNING
+    (void)memcpy(&values[4U * HK_PARAMETERS], store->signing, sizeof *store->signing);
+#else
+    (void)store;
+#endif
 }
 
 /* The generation after that one; what an erased slot shows is left out. */
@@ -142,10 +163,10 @@ static uint16_t next_generation(uint16_t generation)
 void hk_store_save(hk_store_t *store, const hk_parameters_t *parameters)
 {
     uint8_t *const image = store->image;
-    uint8_t values[4U * HK_PARAMETERS];
+    uint8_t values[HK_STORE_CRC_AT - HK_STORE_VALUES_AT];
     const uint16_t generation = number_at(&image[HK_GENERATION_AT]);
 
-    put_values(values, parameters);
+    put_values(store, values, parameters);
     store->failures = 0U;
     if (store->valid && memcmp(values, &image[HK_STORE_VALUES_AT], sizeof values) == 0) {
         store->state = HK_STORE_VERIFY; /* it is there already */
@@ -165,6 +186,10 @@ void hk_store_save(hk_store_t *store, const hk_parameters_t *parameters)
 /* What was written cannot be read back. The last time, go back to the record that there is. */
 static hk_store_event_t try_again(hk_store_t *store)
 {
+#if HK_SIGNING
+    const hk_signing_kept_t *const kept = store->signing;
+#endif
+
     store->failures++;
     store->valid = false;
     store->state = HK_STORE_ERASE;
@@ -172,6 +197,9 @@ static hk_store_event_t try_again(hk_store_t *store)
         return HK_STORE_NOTHING;
     }
     hk_store_init(store);
+#if HK_SIGNING
+    hk_store_keep(store, kept);
+#endif
     return HK_STORE_FAILED;
 }
 

@@ -5,10 +5,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hk_design.h"
 #include "hk_mavlink.h"
+#include "hk_signing.h"
 
-/* The longest payload that anybody here reads: COMMAND_LONG. */
-#define HK_RECEIVE_BYTES 33U
+/* The longest payload that anybody here reads: SETUP_SIGNING or COMMAND_LONG. */
+#define HK_RECEIVE_BYTES (HK_SIGNING ? 42U : 33U)
+#define HK_RECEIVED_HEADER_BYTES 10U
 
 typedef struct {
     uint16_t place;   /* of the next byte in its frame; 0 while a frame is awaited */
@@ -25,6 +28,11 @@ typedef struct {
     uint16_t frames;  /* that were whole; it and the next wrap */
     uint16_t errors;  /* frames with a wrong checksum */
     uint8_t payload[HK_RECEIVE_BYTES]; /* filled up with zeros */
+#if HK_SIGNING
+    bool wanted; /* the frame will be looked at when its signature is whole */
+    uint8_t header[HK_RECEIVED_HEADER_BYTES];
+    uint8_t tail[HK_TAIL_BYTES]; /* checksum, and signature if there is one */
+#endif
 } hk_receiver_t;
 
 void hk_receiver_init(hk_receiver_t *receiver);
