@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
-from hostkit.emulation.board import Progress, Receive, Send, Stop
+from hostkit.emulation.board import Progress, Receive, Send, Stop, nothing_received
 from hostkit.errors import EmulationError
 
 CHUNK_BYTES = 65536
@@ -46,7 +46,9 @@ def collect(command: Sequence[str], *, timeout_s: float, progress: Progress | No
     return b"".join(pieces)
 
 
-def stream(command: Sequence[str], send: Send, stop: Stop, receive: Receive) -> None:
+def stream(
+    command: Sequence[str], send: Send, stop: Stop, receive: Receive = nothing_received
+) -> None:
     """Run a program, hand on what it writes and give it what comes, until `stop` says so.
 
     Raises

@@ -109,6 +109,6 @@ def check_target(name: str, design: FilterDesign, recording: Recording, folder: 
     assert (result.samples, result.missing, result.mismatches) == (len(recording), 0, 0)
     assert result.max_abs_error_rad is not None
     assert math.degrees(result.max_abs_error_rad) <= 0.005
-    if name != "host":
+    if name not in ("host", "linux"):
         assert result.cycles_mean is not None
         assert 0 < result.cycles_mean <= result.cycles_max

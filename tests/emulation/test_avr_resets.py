@@ -194,7 +194,8 @@ def test_the_application_goes_on_after_a_hang(avr_folder: Path, tmp_path: Path) 
     folder = copied(avr_folder, tmp_path / "code")
     changed(
         folder / "main.c",
-        "        hk_hal_watchdog_feed();\n",
+        "    for (;;) {\n",
+        "    for (;;) {\n"
         "        while (hk_hal_reset_cause() == HK_RESET_POWER && hk_hal_time_us() > 1000000UL) {\n"
         "        }\n",
     )
