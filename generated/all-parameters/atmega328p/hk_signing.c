@@ -128,12 +128,14 @@ static void hash_of(hk_signing_t *signing, const hk_signed_frame_t *frame, uint8
 
 void hk_signing_sign(hk_signing_t *signing, const hk_signed_frame_t *frame, uint32_t now_us)
 {
+    uint8_t *const tail = frame->tail;
+
     if (!follow(signing, now_us)) {
         take_forward(signing, signing->timestamp + 1U);
     }
-    frame->tail[HK_LINK_AT] = HK_LINK_ID;
-    put_timestamp(&frame->tail[HK_TIMESTAMP_AT], signing->timestamp);
-    hash_of(signing, frame, &frame->tail[HK_HASH_AT]);
+    tail[HK_LINK_AT] = HK_LINK_ID;
+    put_timestamp(&tail[HK_TIMESTAMP_AT], signing->timestamp);
+    hash_of(signing, frame, &tail[HK_HASH_AT]);
 }
 
 /* --- Senders -------------------------------------------------------------------------------- */
