@@ -25,7 +25,7 @@ from hostkit.emulation.playback import (
     run_timeout_s,
 )
 from hostkit.emulation.tools import require
-from hostkit.emulation.virtual_sensor import compile_wasm
+from hostkit.emulation.virtual_sensor import compiled_wasm
 from hostkit.errors import BuildError
 
 SCRIPT = "board.mjs"
@@ -82,7 +82,7 @@ class NodeBoard:
         require_end(stimulus)
         with tempfile.TemporaryDirectory(prefix="hostkit-board-") as name:
             play = playback(stimulus, Path(name))
-            command = self._command(folder, play, Path(name))
+            command = self._command(folder, play)
             if progress is not None:
                 command.append("--progress")
             heard = collect(command, timeout_s=run_timeout_s(stimulus), progress=progress)
@@ -109,14 +109,14 @@ class NodeBoard:
         """
         with tempfile.TemporaryDirectory(prefix="hostkit-board-") as name:
             play = playback(dataclasses.replace(stimulus, loop=True), Path(name))
-            stream(self._command(folder, play, Path(name)), send, stop, receive)
+            stream(self._command(folder, play), send, stop, receive)
 
-    def _command(self, folder: Path, play: Playback, work: Path) -> list[str]:
+    def _command(self, folder: Path, play: Playback) -> list[str]:
         require("node", self.emulator)
-        image, sensor = folder.resolve() / self.image, work / "virtual_mpu6050.wasm"
+        image = folder.resolve() / self.image
         if not image.is_file():
             raise BuildError(f"{folder} has not been built yet")
-        compile_wasm(folder, sensor)
+        sensor = compiled_wasm(folder.resolve())
         script = Path(__file__).parent / self.emulator / SCRIPT
         files = ("--image", str(image), "--sensor", str(sensor), "--table", str(play.table))
         return ["node", str(script), *files, *play.options]

@@ -2,6 +2,7 @@
 
 import ctypes
 import subprocess
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from hostkit.emulation.tools import require
 from hostkit.errors import BuildError
 
 SOURCES = "hk_virtual_*.c"
+DEPENDS = "hk_*.[ch]"
+BUILT = "build/virtual_mpu6050.wasm"
 PREFIX = "hk_virtual_mpu6050_"
 TIMEOUT_S = 60.0
 COMMON = ("-O2", "-std=c99", "-ffreestanding", "-fno-builtin", "-ffp-contract=off")
@@ -20,8 +23,8 @@ NEVER = 2**64 - 1
 """Time of an event that does not come."""
 
 
-def compile_wasm(folder: Path, output: Path) -> None:
-    """Compile the model that stands in a generated folder to WebAssembly.
+def compiled_wasm(folder: Path) -> Path:
+    """Return the model that stands in a generated folder as WebAssembly; made if it is not there.
 
     Raises
     ------
@@ -31,7 +34,16 @@ def compile_wasm(folder: Path, output: Path) -> None:
         If clang or its linker is not installed.
     """
     require("clang", "wasm-ld")
-    _compile("clang", *WASM, folder=folder, output=output)
+    output = folder / BUILT
+    newest = max((path.stat().st_mtime_ns for path in folder.glob(DEPENDS)), default=0)
+    if output.is_file() and output.stat().st_mtime_ns > newest:
+        return output
+    output.parent.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent) as name:
+        aside = Path(name) / output.name
+        _compile("clang", *WASM, folder=folder, output=aside)
+        aside.replace(output)
+    return output
 
 
 def compile_shared(folder: Path, output: Path) -> None:
