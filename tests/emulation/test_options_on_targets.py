@@ -97,7 +97,7 @@ def test_the_monitor_passes_the_avr(code) -> None:
         ("hk_filter.h", "INTEGRAL_GAIN_RAW  INT32_C({gain})", "INTEGRAL_GAIN_RAW  INT32_C({less})"),
         ("hk_filter.c", "*bias - change", "(*bias - change) ^ 1"),
         ("hk_filter.h", "GATE_LOWEST  UINT32_C(2174", "GATE_LOWEST  UINT32_C(2164"),
-        ("hk_telemetry.c", "= HK_FILTER_HIDDEN(filter)", "= {{0}}"),
+        ("hk_telemetry.c", "HK_FILTER_HIDDEN(&app->filter);", "{{0}};"),
     ],
 )
 def test_the_monitor_finds_one_wrong_bit(code, tmp_path: Path, file: str, old: str, new: str):

@@ -224,15 +224,10 @@ def saving(folder: Path, code: FilterDesign) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("rate_hz", "gap_rows", "restarts", "texts"),
-    [
-        (50.0, 3, 0, []),
-        (100.0, 5, 1, []),
-        (500.0, 24, 1, ["MPU-6050: silent, restart #1"]),
-    ],
+    ("rate_hz", "gap_rows", "restarts"), [(50.0, 3, 0), (100.0, 5, 1), (500.0, 24, 1)]
 )
 def test_a_change_of_the_store_costs_samples_and_no_more(
-    tmp_path: Path, rate_hz: float, gap_rows: int, restarts: int, texts: list[str]
+    tmp_path: Path, rate_hz: float, gap_rows: int, restarts: int
 ) -> None:
     require_or_skip(*PICO_TOOLS)
     code = design(rate_hz=rate_hz)
@@ -246,7 +241,7 @@ def test_a_change_of_the_store_costs_samples_and_no_more(
     assert gap_rows - 1 <= gap <= gap_rows
     assert (played[0], played[-1]) == (0, len(feels) - 1)
     assert sum(sample.flags & RESTARTED for sample in heard.samples) == 1 + restarts
-    assert [text.text for text in heard.of("STATUSTEXT")] == texts
+    assert [text.text for text in heard.of("STATUSTEXT")] == []
     assert "resets" not in dict(done.faults)
 
 

@@ -159,6 +159,8 @@ def running(fleet: Path, output: Path, designs: int) -> Iterator[subprocess.Pope
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A shell has the programs that it starts in the background ignore interrupts.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as program:
         wait_until(lambda: len(list(output.glob("dev*.json"))) >= designs)
         yield program
