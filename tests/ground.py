@@ -40,7 +40,7 @@ class Ground:
         self._sent.append(LinkInput(time_s=time_s, data=data))
 
     def frame(self, message: object) -> bytes:
-        data = bytes(message.pack(self._mav))  # type: ignore[attr-defined]
+        data = bytes(message.pack(self._mav))
         self._mav.seq = (self._mav.seq + 1) % 256
         return data
 

@@ -19,6 +19,7 @@ def find_drives(mounts: tuple[str, ...] = MOUNTS) -> tuple[Path, ...]:
     mounts
         Patterns of the places where systems mount them.
     """
+    # The patterns are absolute, which Path.glob does not take.
     found = (Path(name) for pattern in mounts for name in glob.glob(pattern))  # noqa: PTH207
     return tuple(sorted(drive for drive in found if is_drive(drive)))
 

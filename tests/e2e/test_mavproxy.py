@@ -154,10 +154,18 @@ def test_the_gyroscope_is_calibrated(station: GroundStation) -> None:
 def test_a_message_interval_is_set(station: GroundStation) -> None:
     station.type("long SET_MESSAGE_INTERVAL 30 100000")
     station.see(r"COMMAND_ACK: SET_MESSAGE_INTERVAL: ACCEPTED")
-    time.sleep(3.0)
-    station.close()
+    asked_ms = attitude_ms(station)[-1]
+    deadline = time.monotonic() + PATIENCE_S
+    while len(since := [t for t in attitude_ms(station) if t > asked_ms]) < 15:
+        assert time.monotonic() < deadline, f"{len(since)} ATTITUDE came"
+        time.sleep(0.2)
+    # Ten samples of 10 ms, each stamped in whole milliseconds.
+    assert np.median(np.diff(since)) == pytest.approx(100, abs=1)
+
+
+def attitude_ms(station: GroundStation) -> list[int]:
+    """Return the device's times of the ATTITUDE messages that MAVProxy has logged so far."""
     decoder = Decoder()
     raw = read_tlog(station.folder / "link.tlog")
     frames = [frame for piece in raw for frame in decoder.feed(piece)]
-    attitude = [frame.message.time_boot_ms for frame in frames if frame.name == "ATTITUDE"]
-    assert np.median(np.diff(attitude[-15:])) == pytest.approx(100, abs=11)
+    return [frame.message.time_boot_ms for frame in frames if frame.name == "ATTITUDE"]

@@ -25,7 +25,7 @@ class Station:
         self.mav = self.module.MAVLink(None, srcSystem=255, srcComponent=190)
 
     def pack(self, message: object) -> bytes:
-        frame = bytes(message.pack(self.mav))  # type: ignore[attr-defined]
+        frame = bytes(message.pack(self.mav))
         self.mav.seq = (self.mav.seq + 1) % 256
         return frame
 

@@ -238,7 +238,7 @@ M = python_module()
 def packed(message: object, sequence: int = 0) -> bytes:
     mav = M.MAVLink(None, srcSystem=255, srcComponent=190)
     mav.seq = sequence
-    return bytes(message.pack(mav))  # type: ignore[attr-defined]
+    return bytes(message.pack(mav))
 
 
 COMMAND = packed(M.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0))

@@ -164,10 +164,10 @@ class FakeScons:
     def subst(self, text: str) -> str:
         return str(self.places[text])
 
-    def Append(self, **lists: list[str]) -> None:  # noqa: N802
+    def Append(self, **lists: list[str]) -> None:  # noqa: N802 - SCons names it so
         self.link += lists.get("LINKFLAGS", [])
 
-    def Object(self, output: str, source: str) -> str:  # noqa: N802
+    def Object(self, output: str, source: str) -> str:  # noqa: N802 - SCons names it so
         self.assembled.append((output, source))
         return output
 

@@ -53,8 +53,8 @@ def measured_tilt_raw(spec: FixedPointSpec, accel_count: IntArray) -> IntArray:
     x, y, z = body_counts(spec, accel_count).T
     angles: dict[Axis, IntArray] = {}
     if spec.tilt == "arcsin":
-        for axis, component in (("roll", y), ("pitch", -x)):
-            angles[axis] = arcsin_count(spec.arctan, component, spec.gravity_count)  # type: ignore[index]
+        angles["roll"] = arcsin_count(spec.arctan, y, spec.gravity_count)
+        angles["pitch"] = arcsin_count(spec.arctan, -x, spec.gravity_count)
     else:
         angles["roll"], length, stretch = atan2_count(spec.arctan, y, z)
         if "pitch" in spec.axes:
