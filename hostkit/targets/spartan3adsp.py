@@ -6,5 +6,5 @@ SPARTAN3ADSP = Target(
     name="spartan3adsp",
     title="Spartan-3A DSP (XC3SD3400A), VHDL-93",
     kind="fpga",
-    folders=("common", "sim"),
+    folders=("common", "polar", "sensor", "link", "registers", "system", "spartan3adsp", "sim"),
 )

@@ -11,6 +11,7 @@ FLOORS = (
     ("report",),
     ("monitor", "importers"),
     ("validation", "flashing"),
+    ("synthesis",),
     ("emulation",),
     ("link",),
     ("render",),

@@ -1,0 +1,1 @@
+"""Generated VHDL made into gates: converted, mapped, counted, simulated and placed."""
