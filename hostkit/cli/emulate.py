@@ -9,7 +9,8 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.firmware_options import chosen_options, firmware_options
+from hostkit.cli.chosen import chosen_options
+from hostkit.cli.fpga_options import target_options
 from hostkit.cli.generate import TARGET
 from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
@@ -22,7 +23,7 @@ from hostkit.emulation.run import emulate as run_emulation
 from hostkit.errors import VerdictError
 from hostkit.recordings import Recording, load
 from hostkit.records import FilterDesign
-from hostkit.render import DEFAULT_OPTIONS, FirmwareOptions, generate, target_of, write
+from hostkit.render import Options, generate, target_of, write
 from hostkit.targets import TARGETS, Target
 from hostkit.tuning.evaluation import require_rate
 
@@ -58,7 +59,7 @@ from hostkit.tuning.evaluation import require_rate
     + ", ".join(kind.name for kind in KINDS)
     + ".",
 )
-@firmware_options
+@target_options
 @JSON
 def emulate(
     design_file: Path,
@@ -76,7 +77,7 @@ def emulate(
     recording is played over and over. With --fault samples may be lost, but the firmware must
     notice and recover, and every sample that it sends must be right.
 
-    The firmware is rendered with the options given here; --code has those that it was made with. A
+    The code is rendered with the options given here; --code has those that it was made with. A
     filter that computes in float is held against the float model instead, within 1e-5 rad.
 
     \b
@@ -89,7 +90,7 @@ def emulate(
     if pty and faults:
         raise click.UsageError("--fault needs a run that ends; --pty has no end")
     design, target = read_design(design_file), TARGETS[target_name]
-    options = chosen_options()
+    options = chosen_options(target)
     if code is not None and options is not None:
         raise click.UsageError(
             f"{code} has the options that it was made with; give none, or no DIR"
@@ -98,7 +99,7 @@ def emulate(
     require_rate(design.rate_hz, recording)
     if pty and target.kind == "fpga":
         raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")
-    with code_folder(design, target, code, options or DEFAULT_OPTIONS) as folder:
+    with code_folder(design, target, code, options) as folder:
         built = build(folder, target)
         if pty:
             serve(folder, target, design, recording)
@@ -120,7 +121,7 @@ def emulate(
 
 @contextlib.contextmanager
 def code_folder(
-    design: FilterDesign, target: Target, code: Path | None, options: FirmwareOptions
+    design: FilterDesign, target: Target, code: Path | None, options: Options | None
 ) -> Iterator[Path]:
     """Give the folder with the code: the user's, or one that is rendered and then removed."""
     if code is not None:

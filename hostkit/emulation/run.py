@@ -39,6 +39,7 @@ from hostkit.link.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
 from hostkit.records import AXES, AngleTrace, FilterDesign
 from hostkit.render import FirmwareOptions, read_manifest
+from hostkit.render.choices import firmware_options_of
 from hostkit.render.link_plan import link_of
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts
@@ -166,7 +167,7 @@ def emulate(
         if faults:
             raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
         return compare(target, design, counts, _simulate(folder, design, counts, progress))
-    options = read_manifest(folder).options
+    options = firmware_options_of(target, read_manifest(folder).options)
     every = _every(design, target, options)
     tolerance_rad = FLOAT_TOLERANCE_RAD if options.arithmetic == "float" else None
     stimulus = stimulus_of(design, recording)

@@ -89,6 +89,13 @@ TOOLS = (
         hint=_apt("ghdl"),
         command=("ghdl", "--version"),
     ),
+    Tool(name="yosys", purpose="synthesis", hint=_apt("yosys"), command=("yosys", "-V")),
+    Tool(
+        name="iverilog",
+        purpose="simulating a synthesised core",
+        hint=_apt("iverilog"),
+        command=("iverilog", "-V"),
+    ),
 )
 
 
