@@ -16,6 +16,7 @@ from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
+from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -153,6 +154,7 @@ class RenderContext:
     has_pitch: bool
     uses_arcsin: bool
     sensor: SensorContext
+    sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
     target: Target
@@ -179,6 +181,7 @@ def render_context(
     if target.kind != "mcu" and options != DEFAULT_OPTIONS:
         raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
     spec = FILTERS[design.filter].lower(design)
+    sensor = _sensor_context(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -192,7 +195,8 @@ def render_context(
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
-        sensor=_sensor_context(design),
+        sensor=sensor,
+        sensor_program=sensor_program(sensor.configuration, sensor.variant_configuration),
         link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
         options=options,
         target=target,
