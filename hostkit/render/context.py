@@ -19,6 +19,7 @@ from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
+from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -156,6 +157,7 @@ class RenderContext:
     has_pitch: bool
     uses_arcsin: bool
     sensor: SensorContext
+    sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext
@@ -187,6 +189,7 @@ def render_context(
         fpga_options = DEFAULT_FPGA_OPTIONS
         firmware = firmware_options_of(target, options)
     spec = FILTERS[design.filter].lower(design)
+    sensor = _sensor_context(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -200,7 +203,8 @@ def render_context(
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
-        sensor=_sensor_context(design),
+        sensor=sensor,
+        sensor_program=sensor_program(sensor.configuration, sensor.variant_configuration),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga_context(fpga_options, target),
