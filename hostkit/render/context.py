@@ -18,6 +18,7 @@ from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
@@ -159,6 +160,7 @@ class RenderContext:
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext
+    registers: RegistersContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -204,6 +206,14 @@ def render_context(
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga_context(fpga_options, target),
+        registers=registers_context(
+            register_map(
+                design,
+                spec,
+                channels=fpga_options.channels,
+                pipelined=fpga_options.pipelined,
+            )
+        ),
         target=target,
     )
 
