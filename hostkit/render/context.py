@@ -19,6 +19,7 @@ from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
@@ -163,6 +164,7 @@ class RenderContext:
     options: FirmwareOptions
     fpga: FpgaContext
     mavlink: MavlinkContext
+    registers: RegistersContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -212,6 +214,14 @@ def render_context(
         fpga=fpga_context(fpga_options, target),
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
+        ),
+        registers=registers_context(
+            register_map(
+                design,
+                spec,
+                channels=fpga_options.channels,
+                pipelined=fpga_options.pipelined,
+            )
         ),
         target=target,
     )
