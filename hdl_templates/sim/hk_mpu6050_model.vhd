@@ -529,7 +529,11 @@ begin
     awake_at_v := never_c;
     load_reset_values;
     loop
-      wait on scl_level, sda_level for next_event - now;
+      if next_event = never_c then
+        wait on scl_level, sda_level;
+      else
+        wait on scl_level, sda_level for next_event - now;
+      end if;
       on_time;
       if scl_level = '0' and old_scl_v = '1' then
         on_scl_fall;
