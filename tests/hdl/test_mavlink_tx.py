@@ -33,3 +33,33 @@ def _run(built: FilterDesign, hidden: str, folder: Path) -> int:
         build=folder / "build",
         environment={"HIDDEN_AXES": hidden, "DIGEST": digest(built)},
     )
+
+
+LOADS = {
+    "4": (40_000_000, 10_000_000),
+    "8.68": (25_000_000, 2_880_000),
+    "434.03": (50_000_000, 115_200),
+}
+FRAME_BYTES = 55
+GAP_CLOCKS = 440
+"""In which the payload is measured."""
+
+
+@pytest.mark.usefixtures("ghdl_installed")
+@pytest.mark.parametrize("ratio", LOADS)
+def test_frames_arrive_at_the_rate_of_the_line(tmp_path: Path, ratio: str) -> None:
+    clock_hz, baud = LOADS[ratio]
+    write(render_target(design(), TARGETS["spartan3adsp"]), tmp_path / "core")
+    run_bench(
+        tmp_path / "core",
+        "link_loop",
+        "link_bench",
+        build=tmp_path / "build",
+        parameters={"CLOCK_HZ": clock_hz, "BAUD": baud},
+        more_sources=[Path(__file__).parent / "benches" / "link_loop.vhd"],
+        environment={
+            "DIGEST": digest(design()),
+            "RATIO": str(clock_hz / baud),
+            "MOST_CLOCKS": str(FRAME_BYTES * 10 * clock_hz / baud + GAP_CLOCKS),
+        },
+    )
