@@ -15,7 +15,7 @@ SAMPLES = 4 if float(os.environ["RATIO"]) > 100 else 12
 
 
 class Load:
-    """Samples that are always waiting, a heartbeat with every fourth, and what must come of them."""
+    """Samples always waiting, a heartbeat with every fourth, and what must come of them."""
 
     def __init__(self, dut) -> None:
         self.dut = dut
