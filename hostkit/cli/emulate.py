@@ -14,6 +14,7 @@ from hostkit.cli.fpga_options import target_options
 from hostkit.cli.generate import TARGET
 from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
+from hostkit.cli.system_options import chosen_system, run_system_of, system_options
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.fault import KINDS, parse_fault
 from hostkit.emulation.fault_report import FaultReport
@@ -59,6 +60,7 @@ from hostkit.tuning.evaluation import require_rate
     + ", ".join(kind.name for kind in KINDS)
     + ".",
 )
+@system_options
 @target_options
 @JSON
 def emulate(
@@ -80,11 +82,15 @@ def emulate(
     The code is rendered with the options given here; --code has those that it was made with. A
     filter that computes in float is held against the float model instead, within 1e-5 rad.
 
+    For an FPGA the filter alone is simulated, or with --system all from the sensor's bus to the
+    serial line, on the first rows of the recording.
+
     \b
     Example:
       hostkit emulate design.json --target atmega328p --recording sweep.csv
       hostkit emulate design.json --target atmega328p --recording sweep.csv --pty
       hostkit emulate design.json --target host --recording sweep.csv --fault self-reset@2.5
+      hostkit emulate design.json --target spartan3adsp --recording sweep.csv --system
     """
     faults = tuple(parse_fault(text) for text in fault_texts)
     if pty and faults:
@@ -99,13 +105,17 @@ def emulate(
     require_rate(design.rate_hz, recording)
     if pty and target.kind == "fpga":
         raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")
+    system = chosen_system(target)
     with code_folder(design, target, code, options) as folder:
-        built = build(folder, target)
+        built = () if system else build(folder, target)
         if pty:
             serve(folder, target, design, recording)
             return
-        shown = show_progress(len(recording))
-        result = run_emulation(folder, target, design, recording, shown, faults=faults)
+        if system:
+            result = run_system_of(folder, target, design, recording, system, faults)
+        else:
+            shown = show_progress(len(recording))
+            result = run_emulation(folder, target, design, recording, shown, faults=faults)
     if as_json:
         emit_json(emulation_document(result, built))
     else:

@@ -179,10 +179,10 @@ def emulate(
             )
         planned = planned_faults(faults, len(recording), design.rate_hz)
         run = board_of(target).run(folder, replace(stimulus, faults=planned), progress=progress)
-        heard = _heard(run, target, design)
+        heard = heard_of(run, target, design)
         return compare_with_faults(target, design, counts, run, heard, faults, tolerance_rad)
     run = board_of(target).run(folder, stimulus, progress=progress)
-    answer = _answer(run, target, design)
+    answer = answer_of(run, target, design)
     return compare(
         target, design, counts, replace(answer, every=every, tolerance_rad=tolerance_rad)
     )
@@ -210,8 +210,15 @@ def _simulate(
     )
 
 
-def _answer(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
-    frames, trace = _heard(run, target, design)
+def answer_of(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
+    """Return the samples that a board sent.
+
+    Raises
+    ------
+    EmulationError
+        If there is none, or one is not of the design.
+    """
+    frames, trace = heard_of(run, target, design)
     if not len(trace):
         texts = said(frames)
         raise EmulationError(
@@ -230,7 +237,14 @@ def _answer(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
     )
 
 
-def _heard(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+def heard_of(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+    """Return the messages that a board sent, and those of its samples as a trace.
+
+    Raises
+    ------
+    EmulationError
+        If a sample is of another design, or was made with other parameters.
+    """
     frames = Decoder().feed(run.stream)
     samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
     for message in samples:

@@ -17,6 +17,7 @@ from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
@@ -160,6 +161,7 @@ class RenderContext:
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext
+    mavlink: MavlinkContext
     registers: RegistersContext
     target: Target
 
@@ -206,14 +208,10 @@ def render_context(
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga_context(fpga_options, target),
-        registers=registers_context(
-            register_map(
-                design,
-                spec,
-                channels=fpga_options.channels,
-                pipelined=fpga_options.pipelined,
-            )
+        mavlink=mavlink_context(
+            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
         ),
+        registers=registers_context(register_map(design, spec, fpga_options)),
         target=target,
     )
 
