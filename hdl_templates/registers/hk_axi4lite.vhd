@@ -146,6 +146,8 @@ begin
         have_read_r         <= '0';
         write_bad_r         <= '0';
         read_bad_r          <= '0';
+        write_address_r     <= (others => '0');  -- only for a quiet simulation
+        read_address_r      <= (others => '0');
       end if;
     end if;
   end process;
