@@ -219,14 +219,7 @@ def render_context(
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
         ),
-        registers=registers_context(
-            register_map(
-                design,
-                spec,
-                channels=fpga_options.channels,
-                pipelined=fpga_options.pipelined,
-            )
-        ),
+        registers=registers_context(register_map(design, spec, fpga_options)),
         target=target,
     )
 
