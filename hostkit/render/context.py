@@ -15,7 +15,6 @@ from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
-from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
@@ -158,7 +157,7 @@ class RenderContext:
     sensor: SensorContext
     link: LinkPlan
     options: FirmwareOptions
-    fpga: FpgaContext
+    fpga: FpgaContext | None
     target: Target
 
     def banner(self, template: str) -> str:
@@ -180,13 +179,14 @@ def render_context(
         If the design cannot be lowered, or does not fit the target's sensor rate or link, or
         there are options for a target of another kind.
     """
-    if target.kind == "fpga":
-        fpga_options = fpga_options_of(target, options)
-        firmware = link_options(fpga_options)
-    else:
-        fpga_options = DEFAULT_FPGA_OPTIONS
-        firmware = firmware_options_of(target, options)
     spec = FILTERS[design.filter].lower(design)
+    fpga = None
+    if target.kind == "fpga":
+        chosen = fpga_options_of(target, options)
+        fpga = fpga_context(chosen, target, spec, design.rate_hz)
+        firmware = link_options(chosen, fpga)
+    else:
+        firmware = firmware_options_of(target, options)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -203,7 +203,7 @@ def render_context(
         sensor=_sensor_context(design),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
-        fpga=fpga_context(fpga_options, target),
+        fpga=fpga,
         target=target,
     )
 
