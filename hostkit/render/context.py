@@ -16,6 +16,7 @@ from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
@@ -158,6 +159,7 @@ class RenderContext:
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext | None
+    mavlink: MavlinkContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -204,6 +206,9 @@ def render_context(
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga,
+        mavlink=mavlink_context(
+            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
+        ),
         target=target,
     )
 

@@ -50,7 +50,9 @@ def register_map(
     """
     return RegisterMap(
         registers=(
-            *constant_registers(design, spec, (digest(design), __version__), (channels, pipelined)),
+            *constant_registers(
+                design, spec, (digest(design), __version__), (channels, pipelined)
+            ),
             *_control_registers(),
             *setting_registers(spec),
             *_sample_registers(spec),

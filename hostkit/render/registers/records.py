@@ -63,10 +63,7 @@ class Field:
             require_identifier(f"element of field {self.name}", self.element)
         if bool(self.element) == (self.source == "constant"):
             raise RenderError(f"field {self.name}: a constant, and only that, has no element")
-        for what, value, known in (
-            ("access", self.access, Access),
-            ("source", self.source, Source),
-        ):
+        for what, value, known in (("access", self.access, Access), ("source", self.source, Source)):
             if value not in get_args(known):
                 raise RenderError(
                     f"field {self.name}: {what} = {value!r}; it must be one of: "
