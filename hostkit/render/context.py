@@ -15,9 +15,11 @@ from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
+from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
@@ -160,6 +162,7 @@ class RenderContext:
     options: FirmwareOptions
     fpga: FpgaContext | None
     mavlink: MavlinkContext
+    registers: RegistersContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -182,7 +185,7 @@ def render_context(
         there are options for a target of another kind.
     """
     spec = FILTERS[design.filter].lower(design)
-    fpga = None
+    chosen, fpga = DEFAULT_FPGA_OPTIONS, None
     if target.kind == "fpga":
         chosen = fpga_options_of(target, options)
         fpga = fpga_context(chosen, target, spec, design.rate_hz)
@@ -208,6 +211,14 @@ def render_context(
         fpga=fpga,
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
+        ),
+        registers=registers_context(
+            register_map(
+                design,
+                spec,
+                channels=chosen.channels,
+                pipelined=chosen.pipelined,
+            )
         ),
         target=target,
     )
