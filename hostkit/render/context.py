@@ -21,6 +21,7 @@ from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
+from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -158,6 +159,7 @@ class RenderContext:
     has_pitch: bool
     uses_arcsin: bool
     sensor: SensorContext
+    sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext | None
@@ -192,6 +194,7 @@ def render_context(
         firmware = link_options(chosen, fpga)
     else:
         firmware = firmware_options_of(target, options)
+    sensor = _sensor_context(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -205,7 +208,8 @@ def render_context(
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
-        sensor=_sensor_context(design),
+        sensor=sensor,
+        sensor_program=sensor_program(sensor.configuration, sensor.variant_configuration),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga,
