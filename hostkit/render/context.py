@@ -15,6 +15,7 @@ from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
+from hostkit.render.polar_context import PolarContext, polar_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
@@ -146,6 +147,7 @@ class RenderContext:
     real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
+    polar: PolarContext
     root_fraction_bits: int
     stretch_fraction_bits: int
     mounting: tuple[MountingContext, ...]
@@ -186,6 +188,7 @@ def render_context(
         real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
+        polar=polar_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
