@@ -19,6 +19,7 @@ from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.polar_context import PolarContext, polar_context
 from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.render.sensor_program import SensorProgram, sensor_program
@@ -152,6 +153,7 @@ class RenderContext:
     real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
+    polar: PolarContext
     root_fraction_bits: int
     stretch_fraction_bits: int
     mounting: tuple[MountingContext, ...]
@@ -202,6 +204,7 @@ def render_context(
         real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
+        polar=polar_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
