@@ -17,6 +17,7 @@ from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
+from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
@@ -159,6 +160,7 @@ class RenderContext:
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext
+    mavlink: MavlinkContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -204,6 +206,9 @@ def render_context(
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga_context(fpga_options, target),
+        mavlink=mavlink_context(
+            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
+        ),
         target=target,
     )
 
