@@ -40,7 +40,22 @@ entity hk_complementary_fixed is
 end entity hk_complementary_fixed;
 
 architecture rtl of hk_complementary_fixed is
+
+  signal settings : hk_settings_t;
+
 begin
+
+  -- One by one, because GHDL 2.0 converts a constant of more than 32 bits wrongly.
+  settings.blend             <= design_settings_c.blend;
+  settings.rate_gain_roll    <= design_settings_c.rate_gain_roll;
+  settings.rate_gain_pitch   <= design_settings_c.rate_gain_pitch;
+  settings.integral_gain     <= design_settings_c.integral_gain;
+  settings.tilt_offset_roll  <= design_settings_c.tilt_offset_roll;
+  settings.tilt_offset_pitch <= design_settings_c.tilt_offset_pitch;
+  settings.gyro_bias_roll    <= design_settings_c.gyro_bias_roll;
+  settings.gyro_bias_pitch   <= design_settings_c.gyro_bias_pitch;
+  settings.gate_lowest       <= design_settings_c.gate_lowest;
+  settings.gate_highest      <= design_settings_c.gate_highest;
 
   core : entity work.hk_complementary
     generic map (
@@ -50,7 +65,7 @@ begin
     port map (
       clk           => clk,
       rst           => rst,
-      settings      => design_settings_c,
+      settings      => settings,
       busy          => busy,
       in_valid      => in_valid,
       in_ready      => in_ready,
