@@ -40,6 +40,13 @@ FPGA_OPTIONS = (
     ),
 )
 
+SYNTHESISE = click.option(
+    "--synthesise",
+    is_flag=True,
+    help="FPGA: synthesise with GHDL and Yosys, and put the resources into the README; takes "
+    "minutes.",
+)
+
 
 def target_options(command: Command) -> Command:
     """Give a subcommand all options of what it renders; see :func:`chosen_options`."""

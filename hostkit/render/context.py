@@ -16,6 +16,7 @@ from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
+from hostkit.render.fpga_report import CellCounts, FpgaReport, fpga_report
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
@@ -165,6 +166,7 @@ class RenderContext:
     link: LinkPlan
     options: FirmwareOptions
     fpga: FpgaContext | None
+    report: FpgaReport | None
     mavlink: MavlinkContext
     registers: RegistersContext
     target: Target
@@ -178,9 +180,18 @@ class RenderContext:
 
 
 def render_context(
-    design: FilterDesign, target: Target, options: Options | None = None
+    design: FilterDesign,
+    target: Target,
+    options: Options | None = None,
+    *,
+    cells: tuple[CellCounts, ...] = (),
 ) -> RenderContext:
     """Lower a design and lay out what templates need.
+
+    Parameters
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
 
     Raises
     ------
@@ -216,6 +227,7 @@ def render_context(
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga,
+        report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
         ),

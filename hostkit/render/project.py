@@ -17,15 +17,18 @@ class ProjectContext:
         Paths of the VHDL to synthesise and of the VHDL to simulate only, each after what it needs.
     verilog
         Paths of Verilog that holds primitives of the vendor.
+    others
+        Paths of all else that comes from templates.
     """
 
     sources: tuple[str, ...]
     benches: tuple[str, ...]
     verilog: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
 
 
 def project_context(
-    texts: Mapping[str, str], benches: Collection[str], top_name: str
+    texts: Mapping[str, str], benches: Collection[str], others: Collection[str], top_name: str
 ) -> ProjectContext:
     """Sort rendered sources.
 
@@ -35,6 +38,8 @@ def project_context(
         Path and text of every VHDL and Verilog source.
     benches
         Paths of those that are for simulation only.
+    others
+        Paths of what is no source.
 
     Raises
     ------
@@ -48,6 +53,7 @@ def project_context(
         sources=tuple(path for path in order if path not in benches),
         benches=tuple(path for path in order if path in benches),
         verilog=tuple(sorted(path for path in texts if path.endswith(".v"))),
+        others=tuple(sorted(others)),
     )
 
 

@@ -48,10 +48,13 @@ def render_folders(context: RenderContext, folders: Iterable[str]) -> list[Gener
     hdl = [template for template in templates if template.output.endswith(HDL_SUFFIXES)]
     files = [_rendered(env, context, template, names) for template in hdl]
     benches = {template.output for template in hdl if template.folder == BENCH_FOLDER}
-    names["project"] = project_context(
-        {file.path: file.content for file in files}, benches, context.fpga.top_name
-    )
     others = [template for template in templates if template not in hdl]
+    names["project"] = project_context(
+        {file.path: file.content for file in files},
+        benches,
+        [template.output for template in others],
+        context.fpga.top_name,
+    )
     return files + [_rendered(env, context, template, names) for template in others]
 
 

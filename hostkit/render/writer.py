@@ -11,6 +11,7 @@ from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.choices import Options, default_options
 from hostkit.render.context import render_context
 from hostkit.render.environment import environment, template_root
+from hostkit.render.fpga_report import CellCounts
 from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.templates import checked, render_folders
@@ -23,16 +24,25 @@ SKETCH_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,61}[A-Za-z0-9_-]|[A-Za-z
 
 
 def render_target(
-    design: FilterDesign, target: Target, options: Options | None = None
+    design: FilterDesign,
+    target: Target,
+    options: Options | None = None,
+    *,
+    cells: tuple[CellCounts, ...] = (),
 ) -> tuple[GeneratedFile, ...]:
     """Render the files that come from hostkit's own templates, sorted by path.
+
+    Parameters
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
 
     Raises
     ------
     HostkitError
         If the design or the options do not fit the target.
     """
-    context = render_context(design, target, options)
+    context = render_context(design, target, options, cells=cells)
     folders = (*target.folders, _filter_folder(design, context.options))
     return _sorted_unique(render_folders(context, folders))
 
@@ -48,6 +58,7 @@ def generate(
     options: Options | None = None,
     *,
     folder: Path | None = None,
+    cells: tuple[CellCounts, ...] = (),
 ) -> tuple[GeneratedFile, ...]:
     """Return everything that `hostkit generate` writes: code, MAVLink headers, design, manifest.
 
@@ -56,6 +67,8 @@ def generate(
     folder
         Where it will be written. An Arduino sketch has the name of its folder, so without one, or
         with a name that the Arduino IDE does not allow, there is none.
+    cells
+        Resources of an FPGA, if they were measured; they stand in its README and manifest.
 
     Raises
     ------
@@ -63,13 +76,13 @@ def generate(
         If the design or the options do not fit the target.
     """
     options = default_options(target) if options is None else options
-    files = list(render_target(design, target, options))
+    files = list(render_target(design, target, options, cells=cells))
     if target.kind == "mcu":
         files.extend(c_headers())
     files.extend(_sketch(design, target, options, folder))
     files.append(GeneratedFile(path=DESIGN, content=design_text(design)))
     files.append(
-        GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files))
+        GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files, cells))
     )
     return _sorted_unique(files)
 

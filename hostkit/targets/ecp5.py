@@ -42,7 +42,10 @@ ECP5 = Target(
     name="ecp5",
     title="ECP5 (LFE5U-25F, ULX3S), VHDL-93",
     kind="fpga",
-    folders=("common", "polar", "sensor", "link", "registers", "system", "ecp5", "sim"),
+    folders=(
+        *("common", "polar", "sensor", "link"),
+        *("registers", "system", "report", "ecp5", "sim"),
+    ),
     clock_hz=25_000_000,
     boards=(ULX3S,),
     clock_maker=PLL,

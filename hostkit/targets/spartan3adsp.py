@@ -59,7 +59,10 @@ SPARTAN3ADSP = Target(
     name="spartan3adsp",
     title="Spartan-3A DSP (XC3SD3400A), VHDL-93",
     kind="fpga",
-    folders=("common", "polar", "sensor", "link", "registers", "system", "spartan3adsp", "sim"),
+    folders=(
+        *("common", "polar", "sensor", "link"),
+        *("registers", "system", "report", "spartan3adsp", "sim"),
+    ),
     clock_hz=50_000_000,
     boards=(PLATFORM_3400A, STARTER_1800A),
     clock_maker=DCM,
