@@ -4,16 +4,24 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.firmware_options import chosen_options, firmware_options
+from hostkit.cli.chosen import chosen_options
+from hostkit.cli.fpga_options import target_options
 from hostkit.cli.inputs import DESIGN, JSON, read_design
 from hostkit.cli.output import emit_json
 from hostkit.design_file import digest
 from hostkit.errors import RenderError
-from hostkit.render import DEFAULT_OPTIONS, FirmwareOptions, read_manifest, stale_files, write
+from hostkit.render import (
+    FirmwareOptions,
+    Options,
+    default_options,
+    read_manifest,
+    stale_files,
+    write,
+)
 from hostkit.render import generate as render_all
 from hostkit.render.link_plan import LinkPlan, link_of
 from hostkit.render.manifest import MANIFEST, options_document
-from hostkit.targets import TARGETS
+from hostkit.targets import TARGETS, Target
 
 TARGET = click.option(
     "--target",
@@ -35,22 +43,23 @@ TARGET = click.option(
     help="Folder to write to.",
 )
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 if a file in DIR differs.")
-@firmware_options
+@target_options
 @JSON
 def generate(design_file: Path, target_name: str, out: Path, check: bool, as_json: bool) -> None:
     """Render the code of DESIGN for one target.
 
-    Options of the firmware stand in its manifest.json; --check without any takes those.
+    Options stand in the manifest.json of the folder; --check without any takes those.
 
     \b
     Example:
       hostkit generate design.json --target atmega328p --out firmware
       hostkit generate design.json --target atmega328p --out firmware --check
       hostkit generate design.json --target rp2040 --out pico --message RAW_IMU=50 --system-id 7
+      hostkit generate design.json --target spartan3adsp --out fpga --bus axi4lite
     """
     design, target = read_design(design_file), TARGETS[target_name]
-    options = chosen_options() or (_written_options(out) if check else DEFAULT_OPTIONS)
-    link = None if target.kind == "fpga" else link_of(design, target, options)
+    options = chosen_options(target) or _standing_options(out, target, check)
+    link = link_of(design, target, options) if isinstance(options, FirmwareOptions) else None
     files = render_all(design, target, options, folder=out)
     stale = stale_files(files, out) if check else write(files, out)
     if as_json:
@@ -61,7 +70,7 @@ def generate(design_file: Path, target_name: str, out: Path, check: bool, as_jso
                 "files": [file.path for file in files],
                 "digest": digest(design),
                 "stale": list(stale),
-                "options": link and options_document(options),
+                "options": options_document(options),
                 "link": link and _link_document(link),
             }
         )
@@ -82,9 +91,13 @@ def generate(design_file: Path, target_name: str, out: Path, check: bool, as_jso
         )
 
 
-def _written_options(out: Path) -> FirmwareOptions:
-    """Return the options that a folder was made with; one that is not there has the defaults."""
-    return read_manifest(out).options if (out / MANIFEST).is_file() else DEFAULT_OPTIONS
+def _standing_options(out: Path, target: Target, check: bool) -> Options:
+    """Return the defaults or, to check a folder, the options that it was made with."""
+    if check and (out / MANIFEST).is_file():
+        written = read_manifest(out)
+        if written.target == target.name:
+            return written.options
+    return default_options(target)
 
 
 def _link_document(link: LinkPlan) -> dict[str, object]:

@@ -5,16 +5,19 @@ from dataclasses import dataclass
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.errors import DesignError, RenderError
+from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
+from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
+from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
+from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.link_plan import LinkPlan, link_plan
-from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
+from hostkit.render.options import FirmwareOptions
 from hostkit.render.polar_context import PolarContext, polar_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.sensors import SENSORS, mpu6050
@@ -157,6 +160,7 @@ class RenderContext:
     sensor: SensorContext
     link: LinkPlan
     options: FirmwareOptions
+    fpga: FpgaContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -168,7 +172,7 @@ class RenderContext:
 
 
 def render_context(
-    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+    design: FilterDesign, target: Target, options: Options | None = None
 ) -> RenderContext:
     """Lower a design and lay out what templates need.
 
@@ -176,10 +180,14 @@ def render_context(
     ------
     HostkitError
         If the design cannot be lowered, or does not fit the target's sensor rate or link, or
-        there are options for a target that runs no firmware.
+        there are options for a target of another kind.
     """
-    if target.kind != "mcu" and options != DEFAULT_OPTIONS:
-        raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
+    if target.kind == "fpga":
+        fpga_options = fpga_options_of(target, options)
+        firmware = link_options(fpga_options)
+    else:
+        fpga_options = DEFAULT_FPGA_OPTIONS
+        firmware = firmware_options_of(target, options)
     spec = FILTERS[design.filter].lower(design)
     return RenderContext(
         design=_design_context(design),
@@ -196,8 +204,9 @@ def render_context(
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
-        options=options,
+        link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
+        options=firmware,
+        fpga=fpga_context(fpga_options, target),
         target=target,
     )
 

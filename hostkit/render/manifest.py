@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -10,8 +10,10 @@ from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.errors import RenderError
 from hostkit.records import FilterDesign, GeneratedFile
+from hostkit.render.choices import Options, default_options, fpga_options_of
+from hostkit.render.fpga_options import FpgaOptions
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions, MessageRate
-from hostkit.targets import Target
+from hostkit.targets import TARGETS, Target
 
 MANIFEST = "manifest.json"
 MANIFEST_SCHEMA = "hostkit.manifest/1"
@@ -24,27 +26,30 @@ class Manifest:
     target: str
     digest: str
     files: tuple[tuple[str, str], ...]
-    options: FirmwareOptions = DEFAULT_OPTIONS
+    options: Options = DEFAULT_OPTIONS
 
 
 def manifest_text(
-    design: FilterDesign, target: Target, options: FirmwareOptions, files: list[GeneratedFile]
+    design: FilterDesign, target: Target, options: Options, files: list[GeneratedFile]
 ) -> str:
-    """Return the manifest of rendered files; only firmware has options."""
+    """Return the manifest of rendered files."""
+    if target.kind == "fpga":
+        options = fpga_options_of(target, options)
     document = {
         "schema": MANIFEST_SCHEMA,
         "hostkit": __version__,
         "target": target.name,
         "design": digest(design),
         "files": {file.path: sha256(file.content.encode("utf-8")) for file in files},
+        "options": options_document(options),
     }
-    if target.kind == "mcu":
-        document["options"] = options_document(options)
     return json.dumps(document, indent=2, sort_keys=True) + "\n"
 
 
-def options_document(options: FirmwareOptions) -> dict[str, object]:
+def options_document(options: Options) -> dict[str, object]:
     """Return options as they stand in a manifest and in ``generate --json``."""
+    if isinstance(options, FpgaOptions):
+        return {field.name: getattr(options, field.name) for field in fields(options)}
     return {
         "profile": options.profile,
         "system_id": options.system_id,
@@ -77,7 +82,7 @@ def read_manifest(folder: Path) -> Manifest:
         if document["schema"] != MANIFEST_SCHEMA:
             raise ValueError(f"schema is {document['schema']!r}")
         target, design = str(document["target"]), str(document["design"])
-        options = _options(document["options"]) if "options" in document else DEFAULT_OPTIONS
+        options = _options_of(target, document.get("options"))
     except OSError as error:
         raise RenderError(
             f"{folder} holds no {MANIFEST}; it was not made by `hostkit generate`"
@@ -93,6 +98,27 @@ def _require_inside(path: Path, name: str) -> None:
     pure = PurePosixPath(name)
     if pure.is_absolute() or ".." in pure.parts or not pure.parts:
         raise RenderError(f"{path} names {name!r}, which is outside its folder")
+
+
+def _options_of(target: str, document: Any) -> Options:
+    """Return the options in a manifest; a target that is not known here is taken for firmware."""
+    known = TARGETS[target] if target in TARGETS.names() else None
+    if document is None:
+        return DEFAULT_OPTIONS if known is None else default_options(known)
+    return _fpga_options(document) if known and known.kind == "fpga" else _options(document)
+
+
+def _fpga_options(document: Any) -> FpgaOptions:
+    return FpgaOptions(
+        bus=document["bus"],
+        channels=int(document["channels"]),
+        pipelined=bool(document["pipelined"]),
+        clock_hz=None if document["clock_hz"] is None else int(document["clock_hz"]),
+        baud=None if document["baud"] is None else int(document["baud"]),
+        profile=document["profile"],
+        system_id=int(document["system_id"]),
+        top_name=str(document["top_name"]),
+    )
 
 
 def _options(document: Any) -> FirmwareOptions:

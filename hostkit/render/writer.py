@@ -9,10 +9,11 @@ from hostkit.dialect import c_headers
 from hostkit.errors import HostkitError, RenderError
 from hostkit.files import write_aside
 from hostkit.records import FilterDesign, GeneratedFile
+from hostkit.render.choices import Options, default_options
 from hostkit.render.context import RenderContext, render_context
 from hostkit.render.environment import environment, template_root
 from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
-from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
+from hostkit.render.options import FirmwareOptions
 from hostkit.targets import TARGETS, Target
 
 DESIGN = "design.json"
@@ -22,7 +23,7 @@ SKETCH_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,61}[A-Za-z0-9_-]|[A-Za-z
 
 
 def render_target(
-    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+    design: FilterDesign, target: Target, options: Options | None = None
 ) -> tuple[GeneratedFile, ...]:
     """Render the files that come from hostkit's own templates, sorted by path.
 
@@ -36,7 +37,7 @@ def render_target(
     env = environment(root)
     names = {field.name: getattr(context, field.name) for field in fields(RenderContext)}
     files = []
-    for folder in (*target.folders, _filter_folder(design, target, options)):
+    for folder in (*target.folders, _filter_folder(design, context.options)):
         for path in sorted(p for p in (root / folder).rglob("*") if p.is_file()):
             template = path.relative_to(root).as_posix()
             output = path.relative_to(root / folder).as_posix()
@@ -50,16 +51,15 @@ def render_target(
     return _sorted_unique(files)
 
 
-def _filter_folder(design: FilterDesign, target: Target, options: FirmwareOptions) -> str:
+def _filter_folder(design: FilterDesign, options: FirmwareOptions) -> str:
     """Return the folder of the filter in the arithmetic that was asked for."""
-    in_float = target.kind == "mcu" and options.arithmetic == "float"
-    return f"{design.filter}_float" if in_float else design.filter
+    return f"{design.filter}_float" if options.arithmetic == "float" else design.filter
 
 
 def generate(
     design: FilterDesign,
     target: Target,
-    options: FirmwareOptions = DEFAULT_OPTIONS,
+    options: Options | None = None,
     *,
     folder: Path | None = None,
 ) -> tuple[GeneratedFile, ...]:
@@ -76,6 +76,7 @@ def generate(
     HostkitError
         If the design or the options do not fit the target.
     """
+    options = default_options(target) if options is None else options
     files = list(render_target(design, target, options))
     if target.kind == "mcu":
         files.extend(c_headers())
@@ -88,7 +89,7 @@ def generate(
 
 
 def _sketch(
-    design: FilterDesign, target: Target, options: FirmwareOptions, folder: Path | None
+    design: FilterDesign, target: Target, options: Options, folder: Path | None
 ) -> tuple[GeneratedFile, ...]:
     name = "" if folder is None else folder.resolve().name
     if not target.arduino or not SKETCH_NAME.fullmatch(name):

@@ -1,0 +1,129 @@
+-- Bench of hk_system: the model of the sensor plays a table of counts, and what comes over the
+-- serial line is written to a file.
+--
+-- COUNT_FILE: the table of hk_mpu6050_model. RESULT_FILE: a line for each byte of the serial line,
+-- the time in microseconds at which its stop bit ended and two hex digits.
+--
+-- The bench ends by itself DRAIN_US after the table has been played: without an error if every
+-- character had a start and a stop bit and no output was ever unknown.
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use std.textio.all;
+
+entity hk_system_tb is
+  generic (
+    COUNT_FILE   : string   := "counts.txt";
+    RESULT_FILE  : string   := "bytes.txt";
+    CLOCK_HZ     : positive := 4000000;
+    BAUD         : positive := 1000000;
+    TIME_DIVISOR : positive := 1;
+    PERIOD_US    : positive := 1000;   -- of the sensor's samples
+    DRAIN_US     : positive := 3000
+  );
+end entity hk_system_tb;
+
+architecture sim of hk_system_tb is
+
+  constant clock_period_c : time := 1 sec / CLOCK_HZ;
+  constant bit_time_c     : time := 1 sec / BAUD;
+
+  type hex_digits_t is array (0 to 15) of character;
+  constant hex_digits_c : hex_digits_t := "0123456789abcdef";
+
+  signal clk      : std_logic := '0';
+  signal rst      : std_logic := '1';
+  signal ended    : boolean   := false;
+  signal played   : boolean   := false;
+
+  signal scl      : std_logic;
+  signal sda      : std_logic;
+  signal scl_in   : std_logic;
+  signal sda_in   : std_logic;
+  signal scl_low  : std_logic;
+  signal sda_low  : std_logic;
+  signal int_pin  : std_logic;
+  signal uart_tx  : std_logic;
+  signal running  : std_logic;
+  signal failed   : std_logic;
+
+begin
+
+  clock : process
+  begin
+    while not ended loop
+      wait for clock_period_c / 2;
+      clk <= '1';
+      wait for clock_period_c - clock_period_c / 2;
+      clk <= '0';
+    end loop;
+    wait;
+  end process clock;
+
+  rst <= '1', '0' after 4 * clock_period_c;
+
+  -- Open drain with pull-ups.
+  scl    <= 'H';
+  sda    <= 'H';
+  scl    <= '0' when scl_low = '1' else 'Z';
+  sda    <= '0' when sda_low = '1' else 'Z';
+  scl_in <= to_x01(scl);
+  sda_in <= to_x01(sda);
+
+  system : entity work.hk_system
+    generic map (
+      CLOCK_HZ     => CLOCK_HZ,
+      BAUD         => BAUD,
+      TIME_DIVISOR => TIME_DIVISOR
+    )
+    port map (
+      clk     => clk,
+      rst     => rst,
+      scl_in  => scl_in,
+      sda_in  => sda_in,
+      scl_low => scl_low,
+      sda_low => sda_low,
+      int_pin => int_pin,
+      uart_tx => uart_tx,
+      running => running,
+      failed  => failed
+    );
+
+  -- A receiver that is as strict as the standard: it looks at the middle of every bit.
+  receive : process
+    file results    : text open write_mode is RESULT_FILE;
+    variable line_v : line;
+    variable byte_v : unsigned(7 downto 0);
+  begin
+    wait until rst = '0';
+    loop
+      if uart_tx /= '0' then
+        wait until uart_tx = '0';
+      end if;
+      wait for bit_time_c / 2;
+      assert uart_tx = '0' report "a start bit is too short" severity failure;
+      for i in 0 to 7 loop
+        wait for bit_time_c;
+        assert uart_tx = '0' or uart_tx = '1' report "an unknown bit was sent" severity failure;
+        byte_v := uart_tx & byte_v(7 downto 1);
+      end loop;
+      wait for bit_time_c;
+      assert uart_tx = '1' report "a stop bit is missing" severity failure;
+      write(line_v, now / 1 us);
+      write(line_v, ' ');
+      write(line_v, hex_digits_c(to_integer(byte_v(7 downto 4))));
+      write(line_v, hex_digits_c(to_integer(byte_v(3 downto 0))));
+      writeline(results, line_v);
+    end loop;
+  end process receive;
+
+  finish : process
+  begin
+    wait until played;
+    wait for DRAIN_US * 1 us;
+    ended <= true;
+    wait;
+  end process finish;
+
+end architecture sim;
