@@ -30,6 +30,8 @@ class MessageContext:
 
     Attributes
     ----------
+    title
+        Its name in the dialect.
     name
         Prefix of its constants.
     id_bytes
@@ -42,6 +44,7 @@ class MessageContext:
         In the order of the wire.
     """
 
+    title: str
     name: str
     id_bytes: tuple[int, int, int]
     crc_extra: int
@@ -52,17 +55,9 @@ class MessageContext:
         """Refuse what the core cannot number."""
         if self.payload_bytes > MOST_PAYLOAD_BYTES:
             raise RenderError(
-                f"{self.name} has a payload of {self.payload_bytes} bytes; "
+                f"{self.title} has a payload of {self.payload_bytes} bytes; "
                 f"the limit of hk_mavlink_tx is {MOST_PAYLOAD_BYTES}"
             )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenContext:
-    """A word of the hidden state: its number and the axis whose bias it is."""
-
-    number: int
-    axis: Axis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,8 +80,10 @@ class MavlinkContext:
         Who the device says it is.
     sample, heartbeat
         The messages.
-    hidden
-        Words of the hidden state that the design uses.
+    hides_bias_roll, hides_bias_pitch
+        Whether that bias is hidden state.
+    bias_roll_word, bias_pitch_word
+        Which word of it; 0 if it is none.
     flags
         Of a sample.
     """
@@ -99,7 +96,10 @@ class MavlinkContext:
     autopilot: int
     sample: MessageContext
     heartbeat: MessageContext
-    hidden: tuple[HiddenContext, ...]
+    hides_bias_roll: bool
+    hides_bias_pitch: bool
+    bias_roll_word: int
+    bias_pitch_word: int
     flags: tuple[FlagContext, ...]
 
 
@@ -128,9 +128,16 @@ def mavlink_context(
         autopilot=identity.autopilot,
         sample=_message("TILT_SAMPLE", "sample", sample_bytes(len(hidden_axes))),
         heartbeat=_message("HEARTBEAT", "heartbeat", None),
-        hidden=tuple(HiddenContext(number=i, axis=axis) for i, axis in enumerate(hidden_axes)),
+        hides_bias_roll="roll" in hidden_axes,
+        hides_bias_pitch="pitch" in hidden_axes,
+        bias_roll_word=_word("roll", hidden_axes),
+        bias_pitch_word=_word("pitch", hidden_axes),
         flags=tuple(_flag(module, name) for name in FLAGS),
     )
+
+
+def _word(axis: Axis, hidden_axes: tuple[Axis, ...]) -> int:
+    return hidden_axes.index(axis) if axis in hidden_axes else 0
 
 
 def _flag(module: Any, name: str) -> FlagContext:
@@ -144,6 +151,7 @@ def _message(name: str, prefix: str, used_bytes: int | None) -> MessageContext:
     kind = module.mavlink_map[number]
     first, second, third = number.to_bytes(3, "little")
     return MessageContext(
+        title=name,
         name=prefix,
         id_bytes=(first, second, third),
         crc_extra=int(kind.crc_extra),

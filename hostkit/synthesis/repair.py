@@ -1,8 +1,8 @@
 """Checks and repairs the Verilog that GHDL 2.0 writes.
 
-Its writer has four known faults. A ``case`` loses its default, a signed shift its sign, and a
-constant of more than 32 bits becomes a text: the VHDL avoids these three, and here they are only
-looked for. A signed product is written as an unsigned one of extended operands, which costs more
+Its writer has five known faults. A ``case`` loses its default, a signed shift its sign, a constant
+of more than 32 bits becomes a text, and a signal called like an instance and its port is declared
+twice: the VHDL avoids these four, and here they are only looked for. A signed product is written as an unsigned one of extended operands, which costs more
 multipliers: that one is repaired.
 """
 
@@ -17,6 +17,7 @@ _MARK = "// smul"
 _END = "endmodule\n"
 _SIGNED = re.compile(r"assign (\w+) = \{\{\d+\{(\w+)\[\d+\]\}\}, (\w+)\}; // sext")
 _UNSIGNED = re.compile(r"assign (\w+) = \{\d+'b0+, \w+\}; +// +uext")
+_DECLARED = re.compile(r"^(?:module|  (?:wire|reg)(?: \[[^]]*\])?) (\w+)", re.MULTILINE)
 _FAULTS = (
     ("a case without a default", re.compile(r"^\s*case[xz]?\b", re.MULTILINE)),
     ("a signed shift without its sign", re.compile(r"\$signed\([^)]*\) >> ")),
@@ -85,6 +86,14 @@ def check(text: str) -> None:
         match = pattern.search(text)
         if match is not None:
             raise BuildError(f"GHDL wrote {fault}, at {place_of(text, match.start())}")
+    for module in text.split(_END):
+        name, *names = _DECLARED.findall(module) or [""]
+        twice = sorted({wire for wire in names if names.count(wire) > 1})
+        if twice:
+            raise BuildError(
+                f"GHDL wrote two wires {twice[0]} in {name}: a signal has the name of an instance "
+                "and its port"
+            )
 
 
 def place_of(text: str, position: int) -> str:
