@@ -11,7 +11,6 @@ from hostkit.emulation.comparison import EmulationResult, compare, compare_with_
 from hostkit.emulation.fault import Fault
 from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
-from hostkit.errors import EmulationError
 from hostkit.link.decoder import Decoder
 from hostkit.link.tlog import TlogWriter
 from hostkit.recordings import Recording

@@ -5,6 +5,7 @@ from typing import Final
 from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.records import Axis, FilterDesign
+from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS, FpgaOptions
 from hostkit.render.registers.constants import constant_registers
 from hostkit.render.registers.records import WORD_BYTES, Access, Field, Kind, Register, RegisterMap
 from hostkit.render.registers.setting_registers import setting_registers
@@ -34,13 +35,13 @@ COUNTERS: Final = (
 
 
 def register_map(
-    design: FilterDesign, spec: FixedPointSpec, *, channels: int = 1, pipelined: bool = False
+    design: FilterDesign, spec: FixedPointSpec, options: FpgaOptions = DEFAULT_FPGA_OPTIONS
 ) -> RegisterMap:
     """Return the registers of a design.
 
     Parameters
     ----------
-    channels, pipelined
+    options
         Generics of the filter, which software can read.
 
     Raises
@@ -50,7 +51,9 @@ def register_map(
     """
     return RegisterMap(
         registers=(
-            *constant_registers(design, spec, (digest(design), __version__), (channels, pipelined)),
+            *constant_registers(
+                design, spec, (digest(design), __version__), (options.channels, options.pipelined)
+            ),
             *_control_registers(),
             *setting_registers(spec),
             *_sample_registers(spec),
