@@ -46,8 +46,8 @@ architecture rtl of hk_complementary_iterative is
   constant root_shift_c   : natural  := guard_bits_c - root_fraction_bits_c;
 
   type state_t is (
-    clearing,   -- with several channels: forget them all
     idle,
+    clearing,   -- with several channels: forget them all
     preparing,  -- the steps below
     waiting,    -- for a measured tilt; then multiply the innovation
     multiplying,
@@ -184,23 +184,23 @@ begin
         end if;
 
       elsif state_r = idle then
-        axis_r       <= first_axis;
-        step_r       <= (others => '0');
-        channel_r    <= in_channel;
-        size_roll_r  <= tilt_size(force_side);
-        down_roll_r  <= force_side(16);
-        size_pitch_r <= tilt_size(force_back);
-        down_pitch_r <= force_back(16);
-        rate_roll_r  <= body_count(body_x_c, gyro_x, gyro_y, gyro_z);
-        rate_pitch_r <= body_count(body_y_c, gyro_x, gyro_y, gyro_z);
-        force_r      <= (accel_x, accel_y, accel_z);
-        saturated_r  <= '0';
-        if at_end_of_range(accel_x) or at_end_of_range(accel_y) or at_end_of_range(accel_z)
-          or at_end_of_range(gyro_x) or at_end_of_range(gyro_y) or at_end_of_range(gyro_z) then
-          saturated_r <= '1';
-        end if;
         if in_valid = '1' then
-          state_r <= preparing;
+          axis_r       <= first_axis;
+          step_r       <= (others => '0');
+          channel_r    <= in_channel;
+          size_roll_r  <= tilt_size(force_side);
+          down_roll_r  <= force_side(16);
+          size_pitch_r <= tilt_size(force_back);
+          down_pitch_r <= force_back(16);
+          rate_roll_r  <= body_count(body_x_c, gyro_x, gyro_y, gyro_z);
+          rate_pitch_r <= body_count(body_y_c, gyro_x, gyro_y, gyro_z);
+          force_r      <= (accel_x, accel_y, accel_z);
+          saturated_r  <= '0';
+          if at_end_of_range(accel_x) or at_end_of_range(accel_y) or at_end_of_range(accel_z)
+            or at_end_of_range(gyro_x) or at_end_of_range(gyro_y) or at_end_of_range(gyro_z) then
+            saturated_r <= '1';
+          end if;
+          state_r      <= preparing;
         end if;
 
       elsif state_r = preparing then
@@ -400,7 +400,7 @@ begin
     end function words;
 
     constant word_bits_c : positive := 32 * words + 1;
-    type memory_t is array (0 to 2 ** channel_bits_c - 1)
+    type memory_t is array (natural range 0 to 2 ** channel_bits_c - 1)
       of std_logic_vector(word_bits_c - 1 downto 0);
     signal memory_r : memory_t;
     signal word_r   : std_logic_vector(word_bits_c - 1 downto 0);
