@@ -99,7 +99,7 @@ SYSTEMRDL: Final = Language(
 LANGUAGES: Final = (VHDL, VERILOG, SYSTEMVERILOG, C, SYSTEMRDL)
 
 
-def require_identifier(what: str, name: str) -> str:
+def require_identifier(what: str, name: str, *, languages: tuple[Language, ...] = LANGUAGES) -> str:
     """Return a name that every generated language takes.
 
     Parameters
@@ -108,6 +108,8 @@ def require_identifier(what: str, name: str) -> str:
         What is called so, for the message.
     name
         The name. Case does not tell two words apart in VHDL, so it does not here.
+    languages
+        Those in which it will stand.
 
     Raises
     ------
@@ -121,7 +123,7 @@ def require_identifier(what: str, name: str) -> str:
         )
     if len(name) > LONGEST:
         raise RenderError(f"{what} = {name!r} has {len(name)} characters; the limit is {LONGEST}")
-    taken = [language.name for language in LANGUAGES if name.lower() in language.words]
+    taken = [language.name for language in languages if name.lower() in language.words]
     if taken:
         raise RenderError(f"{what} = {name!r} is a reserved word of {' and '.join(taken)}")
     return name

@@ -26,6 +26,12 @@ FPGA_OPTIONS = (
         is_flag=True,
         help="FPGA: a filter that takes a sample every clock, instead of a small one.",
     ),
+    _option(
+        "--oscillator-hz",
+        type=int,
+        metavar="N",
+        help="FPGA: clock that the board gives, Hz; that of the target's first board by default.",
+    ),
     _option("--clock-hz", type=int, metavar="N", help="FPGA: clock of the system, Hz."),
     _option(
         "--top-name",

@@ -114,6 +114,9 @@ def _fpga_options(document: Any) -> FpgaOptions:
         channels=int(document["channels"]),
         pipelined=bool(document["pipelined"]),
         clock_hz=None if document["clock_hz"] is None else int(document["clock_hz"]),
+        oscillator_hz=(
+            None if document["oscillator_hz"] is None else int(document["oscillator_hz"])
+        ),
         baud=None if document["baud"] is None else int(document["baud"]),
         profile=document["profile"],
         system_id=int(document["system_id"]),

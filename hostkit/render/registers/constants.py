@@ -40,7 +40,7 @@ def constant_registers(
         ("SENSOR", "How the sensor is set.", _sensor(design)),
         ("RATE", "Sample rate.", (_constant("MILLIHERTZ", 0, 32, round(1e3 * design.rate_hz)),)),
         ("FORMATS", "Fraction bits of the coefficients.", _formats(spec)),
-        ("UNITS", "Weight of the other words.", _units(spec)),
+        ("SCALES", "Weight of the other words.", _scales(spec)),
     )
     return tuple(
         Register(name=name, address=WORD_BYTES * i, description=description, fields=fields)
@@ -65,7 +65,7 @@ def _version(version: str) -> tuple[Field, ...]:
         _constant("PATCH", 0, 8, patch),
         _constant("MINOR", 8, 8, minor),
         _constant("MAJOR", 16, 8, major),
-        _constant("MAP", 24, 8, MAP_REVISION, "revision of the map; it moves with an address"),
+        _constant("REVISION", 24, 8, MAP_REVISION, "revision of the map; it moves with an address"),
     )
 
 
@@ -115,7 +115,7 @@ def _formats(spec: FixedPointSpec) -> tuple[Field, ...]:
     )
 
 
-def _units(spec: FixedPointSpec) -> tuple[Field, ...]:
+def _scales(spec: FixedPointSpec) -> tuple[Field, ...]:
     bits = 0 if spec.integral is None else spec.integral.fraction_bits
     return (
         _constant("BIAS_FRACTION_BITS", 0, 8, bits, "fraction bits of a bias"),

@@ -6,7 +6,7 @@ from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.records import Axis, FilterDesign
 from hostkit.render.registers.constants import constant_registers
-from hostkit.render.registers.records import WORD_BYTES, Access, Field, Register, RegisterMap
+from hostkit.render.registers.records import WORD_BYTES, Access, Field, Kind, Register, RegisterMap
 from hostkit.render.registers.setting_registers import setting_registers
 from hostkit.spec import FixedPointSpec
 
@@ -50,9 +50,7 @@ def register_map(
     """
     return RegisterMap(
         registers=(
-            *constant_registers(
-                design, spec, (digest(design), __version__), (channels, pipelined)
-            ),
+            *constant_registers(design, spec, (digest(design), __version__), (channels, pipelined)),
             *_control_registers(),
             *setting_registers(spec),
             *_sample_registers(spec),
@@ -161,8 +159,8 @@ def _uart() -> tuple[Field, ...]:
 
 def _sample_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
     words = (
-        _word("SEQUENCE", "sequence", "Number of the sample.", False, True),
-        _word("TIME_LOW", "time_us", "Microseconds; a read keeps TIME_HIGH.", False, True),
+        _word("SAMPLE_NUMBER", "sequence", "Number of the sample."),
+        _word("TIME_LOW", "time_us", "Microseconds; a read keeps TIME_HIGH."),
         (
             "TIME_HIGH",
             "High word of the time, as it was when TIME_LOW was read.",
@@ -172,6 +170,7 @@ def _sample_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
                     description="microseconds / 2**32",
                     low=0,
                     width=32,
+                    kind="unsigned",
                     element="time_us",
                     element_low=32,
                     latched_by="TIME_LOW",
@@ -200,14 +199,16 @@ _AXES: Final[tuple[Axis, ...]] = ("roll", "pitch")
 _Word = tuple[str, str, tuple[Field, ...]]
 
 
-def _word(name: str, element: str, description: str, signed: bool, present: bool) -> _Word:
+def _word(
+    name: str, element: str, description: str, kind: Kind = "unsigned", present: bool = True
+) -> _Word:
     field = Field(
         name="VALUE",
         description=description.rstrip(".").lower(),
         low=0,
         width=32,
         element=element,
-        signed=signed,
+        kind=kind,
         present=present,
     )
     return (name, description, (field,))
@@ -219,7 +220,7 @@ def _axis_word(kind: str, axis: Axis, present: bool) -> _Word:
         "BIAS": f"Bias of the gyroscope, {axis}, with BIAS_FRACTION_BITS.",
     }[kind]
     name = f"{kind}_{axis.upper()}"
-    return _word(name, name.lower(), text, True, present)
+    return _word(name, name.lower(), text, "signed", present)
 
 
 def _counts(name: str, description: str, *elements: str) -> _Word:
@@ -230,7 +231,7 @@ def _counts(name: str, description: str, *elements: str) -> _Word:
             low=16 * i,
             width=16,
             element=element,
-            signed=True,
+            kind="signed",
         )
         for i, element in enumerate(elements)
     )
@@ -249,6 +250,7 @@ def _counter_registers() -> tuple[Register, ...]:
                     description="count since reset",
                     low=16 * j,
                     width=16,
+                    kind="unsigned",
                     element=element,
                 )
                 for j, element in enumerate(elements)

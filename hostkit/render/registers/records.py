@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
 from hostkit.errors import RenderError
-from hostkit.identifiers import require_identifier
+from hostkit.identifiers import VERILOG, VHDL, require_identifier
 
 Access = Literal["ro", "rw", "w1c", "pulse", "pop"]
 """Read only; read and write; sticky until 1 is written; acts when 1 is written and reads 0; a read
@@ -13,6 +13,7 @@ takes the value away."""
 Source = Literal["constant", "core", "setting", "decoder"]
 """Where a field's bits are: nowhere but in the decoder's text, in the core, in the settings that
 wait to be committed, or in a flip-flop of the decoder."""
+Kind = Literal["bits", "unsigned", "signed"]
 
 WORD_BITS: Final = 32
 WORD_BYTES: Final = 4
@@ -33,8 +34,8 @@ class Field:
         What the bus can do with it, and where its bits are.
     element, element_low
         Name of the hardware behind it and the bit of it at `low`; a constant has none.
-    signed
-        Whether it is a number in two's complement.
+    kind
+        Bits, or a number, in two's complement if signed.
     reset
         Value after reset, or of a constant, as unsigned bits.
     present
@@ -51,7 +52,7 @@ class Field:
     source: Source = "core"
     element: str = ""
     element_low: int = 0
-    signed: bool = False
+    kind: Kind = "bits"
     reset: int = 0
     present: bool = True
     latched_by: str = ""
@@ -60,10 +61,16 @@ class Field:
         """Refuse names, places and values that no register can have."""
         require_identifier("field", self.name)
         if self.element:
-            require_identifier(f"element of field {self.name}", self.element)
+            require_identifier(
+                f"element of field {self.name}", self.element, languages=(VHDL, VERILOG)
+            )
         if bool(self.element) == (self.source == "constant"):
             raise RenderError(f"field {self.name}: a constant, and only that, has no element")
-        for what, value, known in (("access", self.access, Access), ("source", self.source, Source)):
+        for what, value, known in (
+            ("access", self.access, Access),
+            ("source", self.source, Source),
+            ("kind", self.kind, Kind),
+        ):
             if value not in get_args(known):
                 raise RenderError(
                     f"field {self.name}: {what} = {value!r}; it must be one of: "
@@ -88,7 +95,7 @@ class Field:
     @property
     def mask(self) -> int:
         """Bits of the register that are this field's."""
-        return (2**self.width - 1) << self.low
+        return (1 << self.width) - 1 << self.low
 
     @property
     def readable(self) -> bool:

@@ -5,7 +5,7 @@ from typing import Final
 
 from hostkit.fixedpoint import COEFFICIENT_BITS
 from hostkit.records import Axis
-from hostkit.render.registers.records import WORD_BITS, WORD_BYTES, Field, Register
+from hostkit.render.registers.records import WORD_BITS, WORD_BYTES, Field, Kind, Register
 from hostkit.spec import FixedPointSpec
 
 SETTINGS_ADDRESS: Final = 0x40
@@ -19,7 +19,7 @@ class Setting:
     description: str
     raw: int | None
     width: int = WORD_BITS
-    signed: bool = True
+    kind: Kind = "signed"
 
 
 def settings_of(spec: FixedPointSpec) -> tuple[Setting, ...]:
@@ -56,7 +56,7 @@ def _by_axis(
 
 def _gate(name: str, raw: int | None) -> Setting:
     text = "sum of squared counts from which on" if "low" in name else "and up to which"
-    return Setting(name=name, raw=raw, signed=False, description=f"{text} the force corrects")
+    return Setting(name=name, raw=raw, kind="unsigned", description=f"{text} the force corrects")
 
 
 def setting_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
@@ -75,7 +75,7 @@ def setting_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
                     access="rw",
                     source="setting",
                     element=setting.name,
-                    signed=setting.signed,
+                    kind=setting.kind,
                     reset=(setting.raw or 0) % 2**setting.width,
                     present=setting.raw is not None,
                 ),

@@ -1,0 +1,60 @@
+-- Wishbone B4 slave before the registers: classic cycles, 32-bit data, byte addresses. A transfer takes
+-- two clocks; acknowledge and error come from registers and last one clock.
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+entity hk_wishbone is
+  port (
+    clk           : in  std_logic;
+    rst           : in  std_logic;  -- synchronous, active high
+    wb_cyc        : in  std_logic;
+    wb_stb        : in  std_logic;
+    wb_we         : in  std_logic;
+    wb_adr        : in  std_logic_vector(7 downto 0);  -- bytes; the low two bits are ignored
+    wb_sel        : in  std_logic_vector(3 downto 0);  -- of a write; a read gives the whole word
+    wb_dat_w      : in  std_logic_vector(31 downto 0);
+    wb_dat_r      : out std_logic_vector(31 downto 0);
+    wb_ack        : out std_logic;
+    wb_err        : out std_logic;
+    address       : out unsigned(7 downto 0);  -- from here on: ports of hk_regs
+    write         : out std_logic;
+    read          : out std_logic;
+    write_data    : out std_logic_vector(31 downto 0);
+    write_strobes : out std_logic_vector(3 downto 0);
+    read_data     : in  std_logic_vector(31 downto 0);
+    acknowledge   : in  std_logic;
+    error         : in  std_logic
+  );
+end entity hk_wishbone;
+
+architecture rtl of hk_wishbone is
+
+  signal asked     : std_logic;
+  signal waiting_r : std_logic;  -- for the acknowledge of a request
+
+begin
+
+  asked         <= wb_cyc and wb_stb;
+  address       <= unsigned(wb_adr);
+  write         <= asked and wb_we and not waiting_r;
+  read          <= asked and not wb_we and not waiting_r;
+  write_data    <= wb_dat_w;
+  write_strobes <= wb_sel;
+
+  -- A master that has gone gets no answer.
+  wb_dat_r <= read_data;
+  wb_ack   <= asked and acknowledge and not error;
+  wb_err   <= asked and acknowledge and error;
+
+  process (clk)
+  begin
+    if rising_edge(clk) then
+      waiting_r <= asked;
+      if acknowledge = '1' or rst = '1' then
+        waiting_r <= '0';
+      end if;
+    end if;
+  end process;
+
+end architecture rtl;
