@@ -35,15 +35,13 @@ class SystemTiming:
     clock_hz, baud
         Its clock and its link; a slow clock and a fast link make few clocks of a sample.
     time_divisor
-        So much shorter are the waits of the sensor's driver and the time between heartbeats.
-    period_us
-        Time between two samples of the sensor.
+        So much shorter are the waits of the sensor and of its driver, the time between two samples
+        and that between two heartbeats.
     """
 
     clock_hz: int = 4_000_000
     baud: int = 1_000_000
     time_divisor: int = 1
-    period_us: int = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +98,7 @@ def run_system(
     folder
         Folder on which :func:`build_system` has been called.
     table
-        Counts in the order of the sensor's registers, shape ``(N, 7)``.
+        Counts: specific force, angular rate, temperature, shape ``(N, 7)``.
     generics
         Further generics of the bench and their values.
 
@@ -126,7 +124,7 @@ def run_system(
             "CLOCK_HZ": timing.clock_hz,
             "BAUD": timing.baud,
             "TIME_DIVISOR": timing.time_divisor,
-            "PERIOD_US": timing.period_us,
+            "ROWS": len(table),
         } | dict(generics)
         _run(build, [f"-g{key}={value}" for key, value in wanted.items()], len(table))
         return _parsed(heard)

@@ -165,12 +165,8 @@ class RenderContext:
     sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
-<<<<<<< HEAD
     fpga: FpgaContext | None
     report: FpgaReport | None
-=======
-    fpga: FpgaContext
->>>>>>> e6523aef4504bba391c35128428c9b44c368ec38
     mavlink: MavlinkContext
     registers: RegistersContext
     target: Target
@@ -230,26 +226,12 @@ def render_context(
         sensor_program=sensor_program(sensor.configuration, sensor.variant_configuration),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
-<<<<<<< HEAD
         fpga=fpga,
         report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
         ),
-        registers=registers_context(
-            register_map(
-                design,
-                spec,
-                channels=chosen.channels,
-                pipelined=chosen.pipelined,
-            )
-=======
-        fpga=fpga_context(fpga_options, target),
-        mavlink=mavlink_context(
-            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
->>>>>>> e6523aef4504bba391c35128428c9b44c368ec38
-        ),
-        registers=registers_context(register_map(design, spec, fpga_options)),
+        registers=registers_context(register_map(design, spec, chosen)),
         target=target,
     )
 
