@@ -11,6 +11,7 @@ from hostkit.emulation.comparison import EmulationResult, compare, compare_with_
 from hostkit.emulation.fault import Fault
 from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
+from hostkit.emulation.system_faults import fault_generics
 from hostkit.link.decoder import Decoder
 from hostkit.link.tlog import TlogWriter
 from hostkit.recordings import Recording
@@ -23,17 +24,14 @@ from hostkit.targets import Target
 IntArray = NDArray[np.int64]
 
 SHORTEST_US = 1250
-"""A burst of the sensor takes 0.4 ms, and a frame of a sample 0.7 ms at the bench's rate."""
+"""Reading and checking the sensor takes 1.2 ms at most with the slow clock of the bench."""
 US_PER_S = 1e6
-FAULT_GENERICS = {
-    "nack-address": ("NACK_AT", "NACKS"),
-}
-"""Generics of the bench for a fault's time or place, and for its amount."""
 
 
 def timing_of(design: FilterDesign) -> SystemTiming:
     """Return a timing in which a sample of a design takes few clocks."""
-    return SystemTiming(time_divisor=max(1, round(US_PER_S * design.period_s) // SHORTEST_US))
+    fitting = max(1, round(US_PER_S * design.period_s) // SHORTEST_US)
+    return SystemTiming(time_divisor=2 ** (fitting.bit_length() - 1))
 
 
 def table_of(design: FilterDesign, recording: Recording, samples: int) -> tuple[Counts, IntArray]:
@@ -81,7 +79,7 @@ def emulate_system(
     """
     timing = timing_of(design)
     counts, table = table_of(design, recording, samples)
-    run = run_system(folder, table, timing, generics_of(faults, timing))
+    run = run_system(folder, table, timing, fault_generics(faults, design, timing))
     if record is not None:
         write_tlog(run, record)
     board = BoardRun(stream=run.stream)
@@ -105,10 +103,3 @@ def write_tlog(run: SystemRun, path: Path) -> None:
         for frame in decoder.feed(bytes([byte])):
             writer.write(time_us, frame.raw)
     writer.close()
-
-
-def generics_of(
-    faults: tuple[Fault, ...], design: FilterDesign, settle: int
-) -> tuple[tuple[str, str], ...]:
-    """Return faults as generics of the bench."""
-    raise NotImplementedError
