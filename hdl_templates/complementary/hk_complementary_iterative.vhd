@@ -417,10 +417,12 @@ begin
     signal word_r   : std_logic_vector(word_bits_c - 1 downto 0);
     signal word     : std_logic_vector(word_bits_c - 1 downto 0);
     signal address  : unsigned(channel_bits_c - 1 downto 0);
+    signal read     : std_logic;
     signal write    : std_logic;
   begin
 
     address <= in_channel when state_r = idle else channel_r;
+    read    <= in_valid when state_r = idle else '0';
     write   <= '1' when state_r = finished or state_r = clearing else '0';
 
     memory : process (clk)
@@ -429,7 +431,9 @@ begin
         if write = '1' then
           memory_r(to_integer(address)) <= word;
         end if;
-        word_r <= memory_r(to_integer(address));
+        if read = '1' then
+          word_r <= memory_r(to_integer(address));
+        end if;
       end if;
     end process memory;
 
