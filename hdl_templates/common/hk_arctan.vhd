@@ -33,6 +33,7 @@ entity hk_arctan is
     angle           : out signed(31 downto 0);    -- half turns, wraps at +-pi; holds until the next
     length          : out unsigned(29 downto 0);  -- times 1 + stretch / 2**stretch_fraction_bits_c,
     stretch         : out signed(17 downto 0);    -- there with the angle, until a vector is taken
+    turn            : out unsigned(turn_digits_c - 1 downto 0);  -- with it
     multiply        : out std_logic;
     factor          : out signed(22 downto 0);
     coefficient     : out signed(17 downto 0);
@@ -83,6 +84,7 @@ begin
   out_valid <= ending_r(3);
   length    <= along_r(29 downto 0);
   stretch   <= to_signed(stretches_c(to_integer(turn_r)), 18);
+  turn      <= turn_r;
 
   trial  <= ('0' & rest_r) - ("00" & along_r);
   digits <= digits_r(ratio_digits_c - 2 downto 0) & not trial(32);

@@ -87,26 +87,6 @@ architecture rtl of hk_polar_pipelined is
   signal result   : std_logic_vector(result_bits_c - 1 downto 0);
   signal out_data : std_logic_vector(result_bits_c - 1 downto 0);
 
-  -- Size of a component, up to 2**16.
-  function size_of_17 (count : signed(16 downto 0)) return unsigned is
-  begin
-    if count(16) = '1' then
-      return unsigned(-count);
-    end if;
-    return unsigned(count);
-  end function size_of_17;
-
-  -- Size within the arc tangent's limit, or one less in an arc sine, whose squares have 30 bits.
-  function limited_size (size : unsigned(16 downto 0); square : std_logic) return unsigned is
-  begin
-    if square = '1' and (size(16) = '1' or size(15) = '1') then
-      return to_unsigned(polar_limit_c - 1, 16);
-    elsif size(16) = '1' or size(15) = '1' then
-      return to_unsigned(polar_limit_c, 16);
-    end if;
-    return size(15 downto 0);
-  end function limited_size;
-
 begin
 
   in_ready <= room;
@@ -125,14 +105,14 @@ begin
   sizes : process (clk)
   begin
     if rising_edge(clk) then
-      x_size_1_r   <= size_of_17(x);
-      y_size_1_r   <= size_of_17(y);
+      x_size_1_r   <= polar_size(x);
+      y_size_1_r   <= polar_size(y);
       x_below_r    <= x(16) & x_below_r(1 to sized_c - 1);
       y_below_r    <= y(16) & y_below_r(1 to sized_c - 1);
       arcsine_r    <= arcsine & arcsine_r(1 to sized_c - 1);
 
-      x_size_2_r <= limited_size(x_size_1_r, arcsine_r(1));
-      y_size_2_r <= limited_size(y_size_1_r, arcsine_r(1));
+      x_size_2_r <= polar_limited(x_size_1_r, arcsine_r(1));
+      y_size_2_r <= polar_limited(y_size_1_r, arcsine_r(1));
 
       x_size_3_r <= x_size_2_r;
       y_size_3_r <= y_size_2_r;

@@ -8,7 +8,7 @@ from hostkit.render import render_target, write
 from hostkit.targets import TARGETS
 
 PIPELINED_LATENCY = 60
-ITERATIVE_LATENCIES = (0, 0)
+ITERATIVE_LATENCIES = (31, 61)
 
 
 @pytest.mark.usefixtures("ghdl_installed")
