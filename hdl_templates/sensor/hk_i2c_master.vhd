@@ -205,16 +205,18 @@ begin
         if expired_v then
           timer_r <= mark_c;
           if command_r(2) = '1' or command_r = i2c_write_c then
-            timer_r   <= phase_c;
-            scl_low_r <= '1';
-            byte_r    <= byte_r(7 downto 0) & sda_r;
-            left_r    <= left_r - 1;
-            state_r   <= holding;
-            if left_r = 0 then
-              state_r <= finished;
-            elsif command_r(2) = '0' and byte_r(8) = '1' and sda_r = '0' then
+            timer_r <= phase_c;
+            byte_r  <= byte_r(7 downto 0) & sda_r;
+            left_r  <= left_r - 1;
+            if left_r /= 0 and command_r(2) = '0' and byte_r(8) = '1' and sda_r = '0' then
               lost_r  <= '1';
               state_r <= finished;
+            else
+              scl_low_r <= '1';
+              state_r   <= holding;
+              if left_r = 0 then
+                state_r <= finished;
+              end if;
             end if;
           elsif command_r = i2c_start_c then
             if sda_r = '1' then

@@ -1,7 +1,7 @@
 -- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin, and
 -- passes on only what is new, whole, and measured with the registers of the design. Works through the
--- program of hk_mpu6050_pkg, then round and round: sample, registers that say what a count means, and
--- now and then one more register.
+-- program of hk_mpu6050_pkg, then round and round: a sample, the registers that say what a count
+-- means, one more register.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -49,42 +49,20 @@ end entity hk_mpu6050;
 
 architecture rtl of hk_mpu6050 is
 
-  function log2_floor (value : positive) return natural is
-    variable bits_v : natural  := 0;
-    variable rest_v : positive := value;
-  begin
-    while rest_v > 1 loop
-      rest_v := rest_v / 2;
-      bits_v := bits_v + 1;
-    end loop;
-    return bits_v;
-  end function log2_floor;
-
   -- Time is counted in changes of one bit of time_us, which come every 2**bit us.
-  function time_bit (us : positive) return natural is
-    variable bit_v : integer;
+  function divided (bit_of_time : natural) return natural is
+    variable bit_v  : natural  := bit_of_time;
+    variable rest_v : positive := TIME_DIVISOR;
   begin
-    bit_v := log2_floor(us) - log2_floor(TIME_DIVISOR);
-    if bit_v < 0 then
-      return 0;
-    end if;
+    while rest_v > 1 and bit_v > 0 loop
+      rest_v := rest_v / 2;
+      bit_v  := bit_v - 1;
+    end loop;
     return bit_v;
-  end function time_bit;
+  end function divided;
 
-  constant wait_bit_c   : natural := time_bit(4096);
-  constant period_bit_c : natural := time_bit(period_us_c / 8);
-  constant check_bit_c  : natural := time_bit(65536);
-  -- The unit of these is between a sixteenth and an eighth of a period.
-  constant unit_us_c    : positive := 2 ** log2_floor(period_us_c / 8);
-
-  subtype ticks_t is unsigned(7 downto 0);
-  -- A sample that has not been announced by then is looked for; so it is, a little before it is due,
-  -- if the one before was not announced either; and then again and again.
-  constant overdue_c : ticks_t := to_unsigned((period_us_c + period_us_c / 2) / unit_us_c + 1, 8);
-  constant unlooked_c : ticks_t := to_unsigned((period_us_c - period_us_c / 8) / unit_us_c, 8);
-  constant gap_c     : ticks_t := to_unsigned(2, 8);
-  constant pause_c   : ticks_t := to_unsigned(3, 8);    -- 10 ms before it is tried once more
-  constant retreat_c : ticks_t := to_unsigned(245, 8);  -- 1 s after a sensor was refused
+  constant wait_bit_c   : natural := divided(12);
+  constant period_bit_c : natural := divided(period_unit_c);
 
   -- Each trouble in a row adds to what ends in a restart at 64: the fifth identity that is not
   -- accepted, the eleventh failed transfer, the 64th look in vain.
@@ -94,22 +72,12 @@ architecture rtl of hk_mpu6050 is
   constant nothing_c  : trouble_t := to_unsigned(1, 7);
 
   type state_t is (
-    fetch,         -- a step of the program
-    decode,
-    watch,         -- for the next sample
-    start,         -- a transfer
-    address,
-    pointer,
-    value,
-    again,
-    address_read,
-    receive,
-    stop,
-    judge,         -- what came of it
-    passed,
-    accept,
+    decode,    -- a step of the program
+    transfer,
+    judge,     -- what came of it
+    accept,    -- a sample
     deliver,
-    worry,         -- what went wrong
+    worry,     -- something went wrong
     recover,
     resolve,
     pause,
@@ -117,17 +85,29 @@ architecture rtl of hk_mpu6050 is
   );
   signal state_r : state_t;
 
+  -- The commands of a transfer, in order. The third of a reading is a repeated start.
+  subtype phase_t is unsigned(2 downto 0);
+  constant start_c   : phase_t := "000";
+  constant address_c : phase_t := "001";
+  constant pointer_c : phase_t := "010";
+  constant third_c   : phase_t := "011";
+  constant again_c   : phase_t := "100";  -- the address once more
+  constant receive_c : phase_t := "101";
+  constant stop_c    : phase_t := "110";
+  signal phase_r : phase_t;
+
   -- Behind the set-up: which part of a round.
   type part_t is (set_up, sample, scale, one_more);
   signal part_r : part_t;
 
   signal place_r   : unsigned(4 downto 0);  -- in the program
   signal more_r    : unsigned(4 downto 0);  -- the register to be looked at next
-  signal step_r    : hk_step_t;
+  signal step      : hk_step_t;
   signal operation : hk_operation_t;
   signal verify_r  : std_logic;  -- the registers have been written, they are read back
   signal variant_r : std_logic;
   signal writes    : std_logic;  -- the step writes
+  signal compares  : std_logic;  -- the step reads what is known
 
   signal command_valid_r : std_logic;
   signal command_ready   : std_logic;
@@ -143,25 +123,22 @@ architecture rtl of hk_mpu6050 is
   signal index_r    : unsigned(3 downto 0);  -- of the byte that is read
   signal last_byte  : std_logic;
   signal mismatch_r : std_logic;
-  signal torn_r     : std_logic;
-  signal failure_r  : std_logic;  -- of a transfer
+  signal ones_r     : std_logic;  -- the last byte was nothing else: the sensor has let go of the bus
+  signal failure_r  : std_logic;  -- of a transfer, which is to be repeated
   signal trouble_r  : trouble_t;
 
   signal int_r       : std_logic_vector(2 downto 0);
   signal announced_r : std_logic;
   signal by_pin_r    : std_logic;  -- this sample was announced
-  signal retry_r     : std_logic;
   signal fresh_r     : std_logic;  -- the sensor has a sample that was not passed on
   signal fill_r      : std_logic;  -- it may go into the output
   signal same_r      : std_logic;  -- it is like the one before
-  signal left_r      : unsigned(9 downto 0);  -- samples until settled, or taken for frozen
+  signal left_r      : unsigned(8 downto 0);  -- samples until settled, or taken for frozen
   signal settled_r   : std_logic;
 
   signal event_time_r : unsigned(63 downto 0);
   signal ticking_r    : std_logic_vector(1 downto 0);
-  signal check_bit_r  : std_logic;
-  signal check_due_r  : std_logic;
-  signal timer_r      : ticks_t;
+  signal timer_r      : unsigned(7 downto 0);
 
   signal out_valid_r : std_logic;
   signal bytes_r     : std_logic_vector(111 downto 0);
@@ -194,35 +171,33 @@ begin
   running     <= settled_r;
   failed      <= failed_r;
 
-  operation <= step_r(18 downto 16);
+  step      <= program_c(to_integer(place_r));
+  operation <= step(18 downto 16);
   writes    <= '1' when (operation = write_c and part_r = set_up)
                         or ((operation = set_c or operation = variant_c) and verify_r = '0')
                else '0';
-  last_byte <= '1' when (part_r /= sample and part_r /= scale) or index_r = 15
+  compares  <= '0' when operation = identify_c or operation = drop_c or operation = sample_c
+               else '1';
+  last_byte <= '1' when (operation /= sample_c and part_r /= scale) or index_r = 15
                         or (part_r = scale and index_r = last_scale_c - first_scale_c)
                else '0';
 
-  steps : process (clk)
-  begin
-    if rising_edge(clk) then
-      step_r <= program_c(to_integer(place_r));
-    end if;
-  end process steps;
-
-  command <= i2c_start_c   when state_r = start or state_r = again else
-             i2c_stop_c    when state_r = stop else
-             i2c_recover_c when state_r = recover else
-             i2c_last_c    when state_r = receive and last_byte = '1' else
-             i2c_read_c    when state_r = receive else
+  command <= i2c_recover_c when state_r = recover else
+             i2c_start_c   when phase_r = start_c or (phase_r = third_c and writes = '0') else
+             i2c_stop_c    when phase_r = stop_c else
+             i2c_last_c    when phase_r = receive_c and last_byte = '1' else
+             i2c_read_c    when phase_r = receive_c else
              i2c_write_c;
 
-  write_data <= sensor_address_c & '0' when state_r = address else
-                sensor_address_c & '1' when state_r = address_read else
-                step_r(15 downto 8)    when state_r = pointer else
-                step_r(7 downto 0);
+  write_data <= step(7 downto 0)       when phase_r(1 downto 0) = third_c(1 downto 0) else
+                step(15 downto 8)      when phase_r(1 downto 0) = pointer_c(1 downto 0) else
+                sensor_address_c & '0' when phase_r(1 downto 0) = address_c(1 downto 0) else
+                sensor_address_c & '1';
 
   main : process (clk)
-    variable gone_v : boolean;  -- the next state has a command of the bus
+    variable gone_v  : boolean;  -- the next state has a command of the bus
+    variable stamp_v : boolean;  -- this is the time of a sample
+    variable taken_v : boolean;  -- a byte of it
   begin
     if rising_edge(clk) then
       failed_transfer_r <= '0';
@@ -232,7 +207,10 @@ begin
       restart_r         <= '0';
       lost_sample_r     <= '0';
       number_r          <= '0';
-      gone_v            := false;
+
+      gone_v  := false;
+      stamp_v := false;
+      taken_v := false;
 
       if command_ready = '1' then
         command_valid_r <= '0';
@@ -241,165 +219,113 @@ begin
         out_valid_r <= '0';
       end if;
 
-      int_r <= int_r(1 downto 0) & int_pin;
-      if int_r(2 downto 1) = "01" then
-        announced_r  <= '1';
-        event_time_r <= time_us;
-      end if;
-
       ticking_r(1) <= ticking_r(0);
-      if part_r = set_up then
-        ticking_r(0) <= time_us(wait_bit_c);
-      else
+      ticking_r(0) <= time_us(wait_bit_c);
+      if part_r /= set_up then
         ticking_r(0) <= time_us(period_bit_c);
       end if;
-      if ticking_r(1) /= ticking_r(0) and timer_r /= 0 then
+      if ticking_r(1) /= ticking_r(0) then
         timer_r <= timer_r - 1;
       end if;
-      check_bit_r <= time_us(check_bit_c);
-      if check_bit_r /= time_us(check_bit_c) then
-        check_due_r <= '1';
-      end if;
 
-      if state_r = fetch then
-        state_r <= decode;
-
-      elsif state_r = decode then
+      if state_r = decode then
+        phase_r    <= start_c;
         index_r    <= (others => '0');
         mismatch_r <= '0';
-        torn_r     <= '0';
-        failure_r  <= '0';
+        timer_r    <= unsigned(step(7 downto 0));
         if operation = wait_c then
-          timer_r <= unsigned(step_r(7 downto 0));
           state_r <= pause;
         elsif operation = variant_c and variant_r = '0' then
-          state_r <= passed;
-        elsif operation = sample_c then
-          if part_r = set_up then
-            part_r      <= sample;
-            announced_r <= '0';
-            retry_r     <= '0';
-            fresh_r     <= '0';
-            left_r      <= to_unsigned(settle_samples_c, 10);
-            timer_r     <= overdue_c;
-          end if;
-          state_r <= watch;
+          state_r <= judge;
         else
           gone_v  := true;
-          state_r <= start;
+          state_r <= transfer;
         end if;
-
-      elsif state_r = watch then
-        if announced_r = '1' or retry_r = '1' or timer_r = 0 then
-          if retry_r = '0' then
+        if operation = sample_c then
+          if part_r = set_up then
+            fresh_r <= '0';
+            left_r  <= to_unsigned(settle_samples_c, 9);
+          end if;
+          part_r <= sample;
+          if failure_r = '0' then
             by_pin_r <= announced_r;
-            if announced_r = '0' then
-              event_time_r <= time_us;
-            end if;
+            stamp_v  := announced_r = '0';
           end if;
           announced_r <= '0';
-          retry_r     <= '0';
+          failure_r   <= '0';
           same_r      <= '1';
           fill_r      <= not out_valid_r;
-          gone_v      := true;
-          state_r     <= start;
         end if;
 
-      elsif state_r = start or state_r = address or state_r = pointer or state_r = value
-            or state_r = again or state_r = address_read or state_r = receive
-            or state_r = stop then
+      elsif state_r = transfer then
         if reply_valid = '1' then
-          gone_v := true;
+          nack_r    <= nack;
+          timeout_r <= timed_out;
           if nack = '1' or timed_out = '1' or lost = '1' then
             failed_transfer_r <= '1';
-            nack_r            <= nack;
-            timeout_r         <= timed_out;
             failure_r         <= '1';
-            gone_v            := false;
             state_r           <= worry;
-          elsif state_r = start then
-            if part_r = sample and fill_r = '1' then
-              out_time_us <= event_time_r;
-            end if;
-            state_r <= address;
-          elsif state_r = address then
-            state_r <= pointer;
-          elsif state_r = pointer then
-            if writes = '1' then
-              state_r <= value;
-            else
-              state_r <= again;
-            end if;
-          elsif state_r = value then
-            state_r <= stop;
-          elsif state_r = again then
-            state_r <= address_read;
-          elsif state_r = address_read then
-            state_r <= receive;
-          elsif state_r = receive then
-            index_r <= index_r + 1;
-            if part_r = sample then
-              if index_r = 0 then
-                fresh_r <= fresh_r or read_data(0);
-              elsif index_r = 15 then
-                if read_data = "11111111" then
-                  torn_r <= '1';
-                end if;
-              elsif fill_r = '1' then
-                bytes_r <= bytes_r(103 downto 0) & read_data;
-                if bytes_r(111 downto 104) /= read_data then
-                  same_r <= '0';
-                end if;
-              end if;
-            elsif read_data /= step_r(7 downto 0) then
-              mismatch_r <= '1';
-              if read_data = "11111111" then
-                torn_r <= '1';
-              end if;
-            end if;
-            if operation = identify_c then
-              identity_r <= read_data;
-              variant_r  <= is_variant(read_data);
-              mismatch_r <= not is_accepted(read_data);
-            end if;
-            if part_r = scale then
-              place_r <= place_r + 1;
-            end if;
-            if last_byte = '1' then
-              state_r <= stop;
-            end if;
-          else
-            gone_v  := false;
+          elsif phase_r = stop_c then
             state_r <= judge;
+          else
+            gone_v  := true;
+            phase_r <= phase_r + 1;
+            if phase_r = start_c then
+              if operation = sample_c and fill_r = '1' then
+                out_time_us <= event_time_r;
+              end if;
+            elsif phase_r = third_c then
+              if writes = '1' then
+                phase_r <= stop_c;
+              end if;
+            elsif phase_r = receive_c then
+              index_r <= index_r + 1;
+              if last_byte = '0' then
+                phase_r <= receive_c;
+              end if;
+              if part_r = scale then
+                place_r <= place_r + 1;
+              end if;
+              ones_r <= '0';
+              if read_data = "11111111" then
+                ones_r <= '1';
+              end if;
+              if compares = '1' and read_data /= step(7 downto 0) then
+                mismatch_r <= '1';
+              end if;
+              if operation = identify_c then
+                identity_r <= read_data;
+              end if;
+              if operation = sample_c then
+                if index_r = 0 then
+                  fresh_r <= fresh_r or read_data(0);
+                end if;
+                taken_v := fill_r = '1' and index_r /= 0 and index_r /= 15;
+              end if;
+            end if;
           end if;
         end if;
 
       elsif state_r = judge then
-        state_r <= passed;
-        if operation = identify_c then
-          if mismatch_r = '1' then
-            failure_r <= '1';
-            state_r   <= worry;
-          else
-            failed_r <= '0';
+        state_r <= decode;
+        if operation = identify_c and is_accepted(identity_r) = '0' then
+          failure_r <= '1';
+          state_r   <= worry;
+        elsif ones_r = '1' and (mismatch_r = '1' or operation = sample_c) then
+          failed_transfer_r <= '1';
+          failure_r         <= '1';
+          state_r           <= worry;
+        elsif mismatch_r = '1' then
+          failure_r <= '1';
+          state_r   <= restart;
+          if operation = poll_c then
+            state_r <= worry;
           end if;
-        elsif operation /= drop_c then
-          if torn_r = '1' then
-            failed_transfer_r <= '1';
-            failure_r         <= '1';
-            state_r           <= worry;
-          elsif mismatch_r = '1' then
-            if operation = poll_c then
-              state_r <= worry;
-            else
-              state_r <= restart;
-            end if;
+        elsif part_r = set_up then
+          if operation = identify_c then
+            failed_r  <= '0';
+            variant_r <= is_variant(identity_r);
           end if;
-        end if;
-
-      elsif state_r = passed then
-        state_r <= fetch;
-        if part_r = set_up then
           trouble_r <= (others => '0');
           place_r   <= place_r + 1;
           if place_r = last_set_c and verify_r = '0' then
@@ -409,57 +335,53 @@ begin
         elsif part_r = sample then
           place_r <= to_unsigned(first_scale_c, 5);
           part_r  <= scale;
-        elsif part_r = scale and (check_due_r = '1' or fresh_r = '0') then
-          place_r     <= more_r;
-          check_due_r <= '0';
-          part_r      <= one_more;
+        elsif part_r = scale then
+          place_r <= more_r;
+          part_r  <= one_more;
         else
-          if part_r = one_more then
-            more_r <= more_r + 1;
-            if more_r = sample_step_c - 1 then
-              more_r <= to_unsigned(first_set_c, 5);
-            end if;
+          more_r <= more_r + 1;
+          if more_r = sample_step_c - 1 then
+            more_r <= to_unsigned(first_set_c, 5);
           end if;
-          part_r  <= sample;
-          place_r <= to_unsigned(sample_step_c, 5);
+          state_r <= worry;
           if fresh_r = '1' then
             state_r <= accept;
-          else
-            state_r <= worry;
           end if;
         end if;
 
       elsif state_r = accept then
         trouble_r <= (others => '0');
         fresh_r   <= '0';
-        timer_r   <= unlooked_c;
+        place_r   <= to_unsigned(unlooked_step_c, 5);
         if by_pin_r = '1' then
-          timer_r <= overdue_c;
+          place_r <= to_unsigned(overdue_step_c, 5);
         end if;
         left_r  <= left_r - 1;
-        state_r <= fetch;
+        state_r <= decode;
         if settled_r = '0' then
           if left_r = 1 then
             settled_r <= '1';
-            left_r    <= to_unsigned(frozen_samples_c, 10);
+            left_r    <= to_unsigned(frozen_samples_c, 9);
           end if;
         else
+          lost_sample_r <= not fill_r;
+          number_r      <= '1';
+          state_r       <= deliver;
           if fill_r = '0' or same_r = '0' then
-            left_r <= to_unsigned(frozen_samples_c, 10);
-          end if;
-          if fill_r = '1' and same_r = '1' and left_r = 1 then
-            state_r <= restart;
-          else
-            lost_sample_r <= not fill_r;
-            number_r      <= '1';
-            state_r       <= deliver;
+            left_r <= to_unsigned(frozen_samples_c, 9);
+          elsif left_r = 1 then
+            lost_sample_r <= '0';
+            number_r      <= '0';
+            state_r       <= restart;
           end if;
         end if;
 
       elsif state_r = deliver then
         if counting = '0' then
-          out_valid_r <= fill_r or out_valid_r;
-          state_r     <= fetch;
+          if fill_r = '1' then
+            out_valid_r <= '1';
+          end if;
+          state_r <= decode;
         end if;
 
       elsif state_r = worry then
@@ -470,11 +392,8 @@ begin
         else
           trouble_r <= trouble_r + nothing_c;
         end if;
-        state_r <= resolve;
-        if failure_r = '1' then
-          gone_v  := true;
-          state_r <= recover;
-        end if;
+        gone_v  := true;
+        state_r <= recover;
 
       elsif state_r = recover then
         if reply_valid = '1' then
@@ -483,30 +402,28 @@ begin
         end if;
 
       elsif state_r = resolve then
-        timer_r <= pause_c;
-        state_r <= pause;
-        if trouble_r(6) = '1' then
-          if operation = identify_c then
-            trouble_r <= (others => '0');
+        state_r <= decode;
+        if operation = identify_c then
+          place_r <= to_unsigned(begin_step_c, 5);
+          if trouble_r(6) = '1' then
             failed_r  <= '1';
-            timer_r   <= retreat_c;
-          else
-            state_r <= restart;
+            trouble_r <= (others => '0');
+            place_r   <= to_unsigned(refused_step_c, 5);
           end if;
+        elsif trouble_r(6) = '1' then
+          state_r <= restart;
         elsif part_r /= set_up then
-          part_r  <= sample;
-          place_r <= to_unsigned(sample_step_c, 5);
-          retry_r <= failure_r;
-          timer_r <= gap_c;
-          state_r <= fetch;
+          place_r <= to_unsigned(gap_step_c, 5);
+        elsif operation = poll_c then
+          place_r <= to_unsigned(poll_step_c - 1, 5);
         end if;
 
       elsif state_r = pause then
-        if timer_r = 0 then
-          if operation = wait_c then
-            state_r <= passed;
-          else
-            state_r <= fetch;
+        if timer_r = 0 or (part_r /= set_up and (announced_r = '1' or failure_r = '1')) then
+          state_r <= decode;
+          place_r <= place_r + 1;
+          if part_r /= set_up then
+            place_r <= to_unsigned(sample_step_c, 5);
           end if;
         end if;
 
@@ -515,29 +432,44 @@ begin
         settled_r <= '0';
         part_r    <= set_up;
         verify_r  <= '0';
-        place_r   <= (others => '0');
+        place_r   <= to_unsigned(begin_step_c, 5);
         trouble_r <= (others => '0');
-        gone_v    := true;
-        state_r   <= recover;
+        state_r   <= decode;
       end if;
 
+      -- An edge while a sample is read announces the next one.
+      int_r <= int_r(1 downto 0) & int_pin;
+      if int_r(2 downto 1) = "01" then
+        announced_r <= '1';
+        stamp_v     := true;
+      end if;
+      if stamp_v then
+        event_time_r <= time_us;
+      end if;
+      if taken_v then
+        bytes_r <= bytes_r(103 downto 0) & read_data;
+        if bytes_r(111 downto 104) /= read_data then
+          same_r <= '0';
+        end if;
+      end if;
       if gone_v then
         command_valid_r <= '1';
       end if;
 
       if rst = '1' then
-        command_valid_r <= '1';
-        state_r         <= recover;
+        command_valid_r <= '0';
+        state_r         <= decode;
         part_r          <= set_up;
-        place_r         <= (others => '0');
+        place_r         <= to_unsigned(begin_step_c, 5);
         more_r          <= to_unsigned(first_set_c, 5);
         verify_r        <= '0';
         trouble_r       <= (others => '0');
         settled_r       <= '0';
         failed_r        <= '0';
+        failure_r       <= '0';
+        announced_r     <= '0';
         identity_r      <= (others => '0');
         out_valid_r     <= '0';
-        check_due_r     <= '0';
         int_r           <= (others => '1');
       end if;
     end if;

@@ -22,6 +22,7 @@ entity hk_mpu6050_model is
     STRETCH_US       : natural  := 0;
     STUCK_AT_US      : natural  := 0;  -- SDA held low, for so many clocks
     STUCK_CLOCKS     : positive := 5;
+    STUCK_MIDWAY     : natural  := 0;  -- 1: even within a transfer
     TORN_AT_US       : natural  := 0;  -- lets go of the bus in the next burst
     UPSET_AT_US      : natural  := 0;  -- bits of a register turn over
     UPSET_REGISTER   : natural  := 16#1B#;
@@ -477,7 +478,9 @@ begin
       consider(sample_at_v);
       consider(awake_at_v);
       consider(pulse_at_v);
-      consider(stuck_at_v);
+      if not open_v or STUCK_MIDWAY = 1 then
+        consider(stuck_at_v);
+      end if;
       consider(upset_at_v);
       consider(reset_at_v);
       consider(frozen_at_v);
@@ -487,7 +490,7 @@ begin
 
     procedure on_time is
     begin
-      if now >= stuck_at_v then
+      if now >= stuck_at_v and (not open_v or STUCK_MIDWAY = 1) then
         stuck_at_v := never_c;
         stuck_v    := STUCK_CLOCKS;
       end if;
@@ -531,7 +534,7 @@ begin
     loop
       if next_event = never_c then
         wait on scl_level, sda_level;
-      else
+      elsif next_event > now then
         wait on scl_level, sda_level for next_event - now;
       end if;
       on_time;

@@ -223,7 +223,11 @@ def render_context(
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
         sensor=sensor,
-        sensor_program=sensor_program(sensor.configuration, sensor.variant_configuration),
+        sensor_program=sensor_program(
+            sensor.configuration,
+            sensor.variant_configuration,
+            period_us=round(1e6 * design.period_s),
+        ),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga,

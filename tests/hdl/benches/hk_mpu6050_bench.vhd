@@ -27,6 +27,7 @@ entity hk_mpu6050_bench is
     STRETCH_US       : natural  := 0;
     STUCK_AT_US      : natural  := 0;
     STUCK_CLOCKS     : positive := 5;
+    STUCK_MIDWAY     : natural  := 0;
     TORN_AT_US       : natural  := 0;
     UPSET_AT_US      : natural  := 0;
     UPSET_REGISTER   : natural  := 16#1B#;
@@ -161,6 +162,7 @@ begin
       STRETCH_US       => STRETCH_US,
       STUCK_AT_US      => STUCK_AT_US,
       STUCK_CLOCKS     => STUCK_CLOCKS,
+      STUCK_MIDWAY     => STUCK_MIDWAY,
       TORN_AT_US       => TORN_AT_US,
       UPSET_AT_US      => UPSET_AT_US,
       UPSET_REGISTER   => UPSET_REGISTER,
