@@ -1,5 +1,5 @@
--- Wishbone B4 slave before the registers: classic cycles, 32-bit data, byte addresses. A transfer takes
--- two clocks; acknowledge and error come from registers and last one clock.
+-- Wishbone B4 slave before the registers: classic cycles, 32-bit data, byte addresses. A write takes
+-- two clocks and a read three; acknowledge and error come from registers and last one clock.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -31,7 +31,9 @@ end entity hk_wishbone;
 architecture rtl of hk_wishbone is
 
   signal asked     : std_logic;
+  signal answered  : std_logic;
   signal waiting_r : std_logic;  -- for the acknowledge of a request
+  signal gone_r    : std_logic;  -- the master gave that request up
 
 begin
 
@@ -42,17 +44,22 @@ begin
   write_data    <= wb_dat_w;
   write_strobes <= wb_sel;
 
-  -- A master that has gone gets no answer.
+  answered <= asked and acknowledge and not gone_r;
   wb_dat_r <= read_data;
-  wb_ack   <= asked and acknowledge and not error;
-  wb_err   <= asked and acknowledge and error;
+  wb_ack   <= answered and not error;
+  wb_err   <= answered and error;
 
   process (clk)
   begin
     if rising_edge(clk) then
-      waiting_r <= asked;
+      if asked = '1' then
+        waiting_r <= '1';
+      elsif waiting_r = '1' then
+        gone_r <= '1';
+      end if;
       if acknowledge = '1' or rst = '1' then
         waiting_r <= '0';
+        gone_r    <= '0';
       end if;
     end if;
   end process;

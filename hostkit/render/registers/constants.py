@@ -3,8 +3,11 @@
 import re
 from typing import Final
 
+from hostkit import __version__
+from hostkit.design_file import digest
 from hostkit.fixedpoint import QFormat
 from hostkit.records import FilterDesign
+from hostkit.render.fpga_options import FpgaOptions
 from hostkit.render.registers.records import WORD_BYTES, Field, Register
 from hostkit.sensors import mpu6050
 from hostkit.spec import FixedPointSpec
@@ -17,26 +20,16 @@ _NO_FORMAT: Final = QFormat(width=18, fraction_bits=0)
 
 
 def constant_registers(
-    design: FilterDesign,
-    spec: FixedPointSpec,
-    names: tuple[str, str],
-    generics: tuple[int, bool],
+    design: FilterDesign, spec: FixedPointSpec, options: FpgaOptions
 ) -> tuple[Register, ...]:
-    """Return the registers of constants, from address 0 up.
-
-    Parameters
-    ----------
-    names
-        Digest of the design and version of hostkit.
-    generics
-        Channels of the filter, and whether it is pipelined.
-    """
+    """Return the registers of constants, from address 0 up."""
+    digits = digest(design)
     words = (
         ("IDENTITY", "Always 0x484B4954, HKIT in ASCII.", (_constant("MAGIC", 0, 32, MAGIC),)),
-        ("VERSION", "Revision of this map and version of hostkit.", _version(names[1])),
-        ("DIGEST_HIGH", "First digits of the design's digest.", _digest(names[0][:4])),
-        ("DIGEST_LOW", "The other digits.", _digest(names[0][4:])),
-        ("FEATURES", "What the filter has.", _features(spec, *generics)),
+        ("VERSION", "Revision of this map and version of hostkit.", _version(__version__)),
+        ("DIGEST_HIGH", "First digits of the design's digest.", _digest(digits[:4])),
+        ("DIGEST_LOW", "The other digits.", _digest(digits[4:])),
+        ("FEATURES", "What the filter has.", _features(spec, options.channels, options.pipelined)),
         ("SENSOR", "How the sensor is set.", _sensor(design)),
         ("RATE", "Sample rate.", (_constant("MILLIHERTZ", 0, 32, round(1e3 * design.rate_hz)),)),
         ("FORMATS", "Fraction bits of the coefficients.", _formats(spec)),

@@ -2,8 +2,6 @@
 
 from typing import Final
 
-from hostkit import __version__
-from hostkit.design_file import digest
 from hostkit.records import Axis, FilterDesign
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS, FpgaOptions
 from hostkit.render.registers.constants import constant_registers
@@ -51,9 +49,7 @@ def register_map(
     """
     return RegisterMap(
         registers=(
-            *constant_registers(
-                design, spec, (digest(design), __version__), (options.channels, options.pipelined)
-            ),
+            *constant_registers(design, spec, options),
             *_control_registers(),
             *setting_registers(spec),
             *_sample_registers(spec),

@@ -11,6 +11,7 @@ from hostkit.render.registers.records import (
     RegisterMap,
 )
 
+QUARTER_BYTES = 64
 ACCESS_TEXTS = {
     "ro": "read only",
     "rw": "read, write",
@@ -103,13 +104,19 @@ class WordRange:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class QuarterContext:
+    """Registers of one quarter of the address space that show anything but 0."""
+
+    number: int
+    registers: tuple[RegisterContext, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RegistersContext:
     """The register map for templates.
 
     Attributes
     ----------
-    readable
-        Registers that show anything but 0.
     inputs
         What comes from the core.
     settings, events
@@ -123,7 +130,7 @@ class RegistersContext:
     """
 
     registers: tuple[RegisterContext, ...]
-    readable: tuple[RegisterContext, ...]
+    quarters: tuple[QuarterContext, ...]
     inputs: tuple[ElementContext, ...]
     all_settings: tuple[SettingContext, ...]
     settings: tuple[SettingContext, ...]
@@ -142,7 +149,7 @@ def registers_context(registers: RegisterMap) -> RegistersContext:
     settings = tuple(_setting(register) for register in words)
     return RegistersContext(
         registers=laid,
-        readable=tuple(register for register in laid if register.shown),
+        quarters=tuple(_quarter(number, laid) for number in range(4)),
         inputs=_inputs(registers),
         all_settings=settings,
         settings=tuple(s for s in settings if s.present),
@@ -151,6 +158,13 @@ def registers_context(registers: RegisterMap) -> RegistersContext:
         setting_words=_ranges(words)[0],
         known=_ranges(registers.registers),
         written=_ranges([r for r in registers.registers if r.writable]),
+    )
+
+
+def _quarter(number: int, registers: tuple[RegisterContext, ...]) -> QuarterContext:
+    return QuarterContext(
+        number=number,
+        registers=tuple(r for r in registers if r.shown and r.address // QUARTER_BYTES == number),
     )
 
 
