@@ -237,7 +237,9 @@ def answer_of(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
     )
 
 
-def heard_of(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+def heard_of(
+    run: BoardRun, target: Target, design: FilterDesign
+) -> tuple[list[Frame], AngleTrace]:
     """Return the messages that a board sent, and those of its samples as a trace.
 
     Raises

@@ -97,7 +97,9 @@ def polar_arcsin(table: ArctanTable, y: IntArray, one: IntArray) -> tuple[IntArr
     return wrap32(np.where(y < 0, -angle, angle)), magnitude
 
 
-def _angle_and_magnitude(table: ArctanTable, y: IntArray, x: IntArray) -> tuple[IntArray, IntArray]:
+def _angle_and_magnitude(
+    table: ArctanTable, y: IntArray, x: IntArray
+) -> tuple[IntArray, IntArray]:
     angle, length, stretch = vector_angle(table, y, x)
     shrink = np.array(shrinks_raw(table))[np.searchsorted(table.stretches_raw, stretch)]
     return angle, length - ((length * shrink) >> STRETCH_FRACTION_BITS)
