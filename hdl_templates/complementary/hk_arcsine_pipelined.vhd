@@ -1,5 +1,5 @@
--- Arc sine of a count over 1 g, clamped to +-90 deg, a new one every clock: the count is squared, what
--- is left of 1 g has its root taken, and both have an angle.
+-- Arc sine of a count over 1 g, a new one every clock: the count is squared, what is left of 1 g has its
+-- root taken, and both have an angle.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -12,7 +12,7 @@ entity hk_arcsine_pipelined is
   port (
     clk      : in  std_logic;
     rst      : in  std_logic;  -- synchronous, active high
-    size     : in  unsigned(15 downto 0);
+    size     : in  unsigned(15 downto 0);  -- at most 1 g
     negative : in  std_logic;
     angle    : out signed(31 downto 0)  -- half turns
   );
@@ -22,7 +22,7 @@ architecture rtl of hk_arcsine_pipelined is
 
   constant radicand_clocks_c : positive := product_clocks_c + 1;
 
-  signal clamped_r  : std_logic_vector(16 downto 0);  -- sign and size
+  signal sized      : std_logic_vector(16 downto 0);  -- sign and size
   signal factor     : signed(17 downto 0);
   signal square     : signed(35 downto 0);
   signal radicand_r : unsigned(2 * root_integers_c - 1 downto 0);
@@ -36,15 +36,12 @@ begin
   process (clk)
   begin
     if rising_edge(clk) then
-      clamped_r <= negative & std_logic_vector(size);
-      if size > gravity_count_c then
-        clamped_r(15 downto 0) <= std_logic_vector(to_unsigned(gravity_count_c, 16));
-      end if;
       radicand_r <= rest_of_square(resize(square, 50));
     end if;
   end process;
 
-  factor <= signed(resize(unsigned(clamped_r(15 downto 0)), 18));
+  sized  <= negative & std_logic_vector(size);
+  factor <= signed(resize(size, 18));
 
   squaring : entity work.hk_product
     port map (
@@ -73,7 +70,7 @@ begin
     port map (
       clk      => clk,
       rst      => rst,
-      in_data  => clamped_r,
+      in_data  => sized,
       out_data => late
     );
 

@@ -19,18 +19,6 @@ package hk_pipelined_pkg is
   function loop_clocks return positive;
   function channel_clocks return positive;
 
-  -- base + product / 2**bits with halves upwards, and base minus it; the low 32 bits.
-  function plus_rounded (
-    base    : signed(31 downto 0);
-    product : signed(49 downto 0);
-    bits    : positive
-  ) return signed;
-  function minus_rounded (
-    base    : signed(31 downto 0);
-    product : signed(49 downto 0);
-    bits    : positive
-  ) return signed;
-
 end package hk_pipelined_pkg;
 
 package body hk_pipelined_pkg is
@@ -38,8 +26,8 @@ package body hk_pipelined_pkg is
   function tilt_clocks return positive is
   begin
     if uses_arcsin_c then
-      -- Counts, sizes, clamp, square, what is left of 1 g, its root, the arc tangent.
-      return 3 + product_clocks_c + 1 + polar_root_bits_c + arctan_clocks_c;
+      -- Counts, sizes, the square, what is left of 1 g, its root, the arc tangent.
+      return 2 + product_clocks_c + 1 + polar_root_bits_c + arctan_clocks_c;
     elsif has_pitch_c then
       return 2 + length_clocks_c + arctan_clocks_c;
     end if;
@@ -59,32 +47,5 @@ package body hk_pipelined_pkg is
     -- The state is read after one clock, and a write of it is seen a clock later.
     return loop_clocks + 1;
   end function channel_clocks;
-
-  function plus_rounded (
-    base    : signed(31 downto 0);
-    product : signed(49 downto 0);
-    bits    : positive
-  ) return signed is
-    variable wide_v : signed(81 downto 0);
-    variable sum_v  : signed(32 downto 0);
-  begin
-    -- A bit below the sum makes the half of the rounding a carry: one adder instead of two.
-    wide_v := resize(product, 82);
-    sum_v  := (base & '1') + (wide_v(bits + 31 downto bits) & product(bits - 1));
-    return sum_v(32 downto 1);
-  end function plus_rounded;
-
-  function minus_rounded (
-    base    : signed(31 downto 0);
-    product : signed(49 downto 0);
-    bits    : positive
-  ) return signed is
-    variable wide_v : signed(81 downto 0);
-    variable sum_v  : signed(32 downto 0);
-  begin
-    wide_v := resize(product, 82);
-    sum_v  := (base & '1') + not (wide_v(bits + 31 downto bits) & product(bits - 1));
-    return sum_v(32 downto 1);
-  end function minus_rounded;
 
 end package body hk_pipelined_pkg;

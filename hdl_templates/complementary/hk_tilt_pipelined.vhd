@@ -7,7 +7,6 @@ use ieee.numeric_std.all;
 use work.hk_common_pkg.all;
 use work.hk_complementary_pkg.all;
 use work.hk_design_pkg.all;
-use work.hk_pipelined_pkg.all;
 use work.hk_polar_pkg.all;
 
 entity hk_tilt_pipelined is
@@ -24,30 +23,33 @@ end entity hk_tilt_pipelined;
 
 architecture rtl of hk_tilt_pipelined is
 
-  signal component_r : count_array_t;  -- of specific force, rises with the angle
-  signal force_z_r   : signed(16 downto 0);
-  signal roll_size_r     : unsigned(15 downto 0);
-  signal roll_negative_r : std_logic;
+  -- Components of specific force; the angles rise with side and back.
+  signal side_r : signed(16 downto 0);
+  signal back_r : signed(16 downto 0);
+  signal up_r   : signed(16 downto 0);
+
+  signal roll_size_r      : unsigned(15 downto 0);
+  signal roll_negative_r  : std_logic;
   signal pitch_size_r     : unsigned(15 downto 0);
   signal pitch_negative_r : std_logic;
-  signal z_size_r     : unsigned(15 downto 0);
-  signal z_negative_r : std_logic;
+  signal z_size_r         : unsigned(15 downto 0);
+  signal z_negative_r     : std_logic;
 
 begin
 
   counts : process (clk)
   begin
     if rising_edge(clk) then
-      component_r(roll)  <= body_count(body_y_c, accel_x, accel_y, accel_z);
-      component_r(pitch) <= -body_count(body_x_c, accel_x, accel_y, accel_z);
-      force_z_r          <= body_count(body_z_c, accel_x, accel_y, accel_z);
+      side_r <= body_count(body_y_c, accel_x, accel_y, accel_z);
+      back_r <= -body_count(body_x_c, accel_x, accel_y, accel_z);
+      up_r   <= body_count(body_z_c, accel_x, accel_y, accel_z);
 
-      roll_size_r      <= size_of(component_r(roll));
-      roll_negative_r  <= component_r(roll)(16);
-      pitch_size_r     <= size_of(component_r(pitch));
-      pitch_negative_r <= component_r(pitch)(16);
-      z_size_r         <= size_of(force_z_r);
-      z_negative_r     <= force_z_r(16);
+      roll_size_r      <= tilt_size(side_r);
+      roll_negative_r  <= side_r(16);
+      pitch_size_r     <= tilt_size(back_r);
+      pitch_negative_r <= back_r(16);
+      z_size_r         <= size_of(up_r);
+      z_negative_r     <= up_r(16);
     end if;
   end process counts;
 
@@ -208,22 +210,22 @@ begin
   roll_from_one : if uses_arcsin_c and has_roll_c generate
     roll_sine : entity work.hk_arcsine_pipelined
       port map (
-        clk        => clk,
-        rst        => rst,
-        size       => roll_size_r,
-        negative   => roll_negative_r,
-        angle      => force_roll
+        clk      => clk,
+        rst      => rst,
+        size     => roll_size_r,
+        negative => roll_negative_r,
+        angle    => force_roll
       );
   end generate roll_from_one;
 
   pitch_from_one : if uses_arcsin_c and has_pitch_c generate
     pitch_sine : entity work.hk_arcsine_pipelined
       port map (
-        clk        => clk,
-        rst        => rst,
-        size       => pitch_size_r,
-        negative   => pitch_negative_r,
-        angle      => force_pitch
+        clk      => clk,
+        rst      => rst,
+        size     => pitch_size_r,
+        negative => pitch_negative_r,
+        angle    => force_pitch
       );
   end generate pitch_from_one;
 

@@ -86,6 +86,7 @@ def simulate(
     *,
     channel: IntArray | None = None,
     channels: int | None = None,
+    pipelined: bool | None = None,
     settings: Mapping[int, HdlSettings] | None = None,
     random_stalls: bool = False,
     abandon_clocks: int = 0,
@@ -103,6 +104,8 @@ def simulate(
         Channel of each sample, shape ``(N,)``; without it all are of channel 0.
     channels
         How many the core has; without it what it was generated for.
+    pipelined
+        Which core; without it the one that was generated for.
     settings
         Settings by the index of the first sample that they hold for; before the first of them the
         core has the design's.
@@ -147,7 +150,9 @@ def simulate(
                 f"-gABANDON_CLOCKS={abandon_clocks}",
             ),
             *([] if channels is None else [f"-gCHANNELS={channels}"]),
-            "--ieee-asserts=disable-at-0",
+            *([] if pipelined is None else [f"-gPIPELINED={str(pipelined).lower()}"]),
+            # A pipeline computes with whatever stands at its inputs, unknown values included.
+            f"--ieee-asserts={'disable' if pipelined else 'disable-at-0'}",
             "--assert-level=warning",
         ]
         limit_s = RUN_TIMEOUT_S + SAMPLE_TIMEOUT_S * samples
