@@ -195,7 +195,7 @@ begin
   failed      <= failed_r;
 
   operation <= step_r(18 downto 16);
-  writes    <= '1' when operation = write_c
+  writes    <= '1' when (operation = write_c and part_r = set_up)
                         or ((operation = set_c or operation = variant_c) and verify_r = '0')
                else '0';
   last_byte <= '1' when (part_r /= sample and part_r /= scale) or index_r = 15
@@ -416,7 +416,7 @@ begin
         else
           if part_r = one_more then
             more_r <= more_r + 1;
-            if more_r = last_set_c then
+            if more_r = sample_step_c - 1 then
               more_r <= to_unsigned(first_set_c, 5);
             end if;
           end if;

@@ -38,7 +38,8 @@ class SensorProgram:
     accepted, variants
         Parts that are taken, and those with a low-pass register of their own.
     first_set, last_set
-        The registers that are written, read back, and looked at again while the sensor runs.
+        The registers that are written and read back. They are looked at again while the sensor
+        runs, and so is the next one, which lets samples come.
     first_scale, last_scale
         Of these, the ones that say what a count means.
     sample_step
@@ -73,13 +74,12 @@ def sensor_program(
         *(_step("set", w.register, w.value) for w in (*others, *scale)),
         *(_step("variant", w.register, w.value) for w in variant),
         _step("set", mpu6050.PWR_MGMT_1, mpu6050.CLOCK_PLL_GYRO_X),
-        _step("set", mpu6050.INT_ENABLE, mpu6050.DATA_READY),
     )
     first = len(opening)
     steps = (
         *opening,
         *sets,
-        _step("drop", mpu6050.INT_STATUS, 0),
+        _step("write", mpu6050.INT_ENABLE, mpu6050.DATA_READY),
         _step("sample", mpu6050.INT_STATUS, 0),
     )
     return SensorProgram(
@@ -108,6 +108,7 @@ def _opening() -> tuple[ProgramStep, ...]:
         _step("write", mpu6050.SIGNAL_PATH_RESET, mpu6050.SIGNAL_PATH_RESET_ALL),
         pause,
         _step("write", mpu6050.INT_ENABLE, 0),
+        _step("drop", mpu6050.INT_STATUS, 0),
     )
 
 
