@@ -1,9 +1,10 @@
 """Checks and repairs the Verilog that GHDL 2.0 writes.
 
-Its writer has five known faults. A ``case`` loses its default, a signed shift its sign, a constant
-of more than 32 bits becomes a text, and a signal called like an instance and its port is declared
-twice: the VHDL avoids these four, and here they are only looked for. A signed product is written as an unsigned one of extended operands, which costs more
-multipliers: that one is repaired.
+Its writer has five known faults. A ``case`` loses its default, a signed shift its sign, and a
+constant of more than 32 bits becomes a text: the VHDL avoids these three, and here they are only
+looked for. Two are repaired: a signed product is written as an unsigned one of extended operands,
+which costs more multipliers, and a signal called like the instance and the port that drive it is
+declared twice and driven by itself.
 """
 
 import re
@@ -40,12 +41,13 @@ class Repair:
 
 
 def repair(text: str) -> Repair:
-    """Restore the signed products; :func:`check` refuses what cannot be repaired.
+    """Restore signed products and signals that are declared twice.
 
     Raises
     ------
     BuildError
-        If a product is neither of two sign-extended nor of two zero-extended operands.
+        If a product is neither of two sign-extended nor of two zero-extended operands, or two
+        wires of one name are not the same.
     """
     parts = [_repaired(module) for module in text.split(_END)]
     return Repair(
@@ -55,6 +57,7 @@ def repair(text: str) -> Repair:
 
 def _repaired(module: str) -> Repair:
     """Repair one module; the names of wires are its own."""
+    module = _declared_once(module)
     signed = {name: source for name, bit, source in _SIGNED.findall(module) if bit == source}
     unsigned = set(_UNSIGNED.findall(module))
     repaired = 0
@@ -74,6 +77,18 @@ def _repaired(module: str) -> Repair:
     return Repair(text=module, products=repaired)
 
 
+def _declared_once(module: str) -> str:
+    """Join a signal with the output of the same name that drives it."""
+    name, *wires = _DECLARED.findall(module) or [""]
+    for wire in sorted({wire for wire in wires if wires.count(wire) > 1}):
+        itself = f"  assign {wire} = {wire}; // (signal)\n"
+        if wires.count(wire) != 2 or module.count(itself) != 1:
+            raise BuildError(f"GHDL wrote two wires {wire} in {name}, and one is not the other")
+        line = next(m.group() for m in _DECLARED.finditer(module) if m.group(1) == wire)
+        module = module.replace(itself, "").replace(f"{line};\n", "", 1)
+    return module
+
+
 def check(text: str) -> None:
     """Refuse converted Verilog that holds one of the faults that cannot be repaired.
 
@@ -86,14 +101,6 @@ def check(text: str) -> None:
         match = pattern.search(text)
         if match is not None:
             raise BuildError(f"GHDL wrote {fault}, at {place_of(text, match.start())}")
-    for module in text.split(_END):
-        name, *names = _DECLARED.findall(module) or [""]
-        twice = sorted({wire for wire in names if names.count(wire) > 1})
-        if twice:
-            raise BuildError(
-                f"GHDL wrote two wires {twice[0]} in {name}: a signal has the name of an instance "
-                "and its port"
-            )
 
 
 def place_of(text: str, position: int) -> str:

@@ -85,6 +85,4 @@ def assert_equal(run: GateRun, configuration: Configuration, played: IntArray) -
     np.testing.assert_array_equal(run.channel, played[:, 0])
     np.testing.assert_array_equal(run.state_raw, states)
     np.testing.assert_array_equal(run.restarted, restarted)
-    np.testing.assert_array_equal(
-        run.saturated, np.isin(played[:, 1:], FULL_COUNTS).any(axis=1)
-    )
+    np.testing.assert_array_equal(run.saturated, np.isin(played[:, 1:], FULL_COUNTS).any(axis=1))
