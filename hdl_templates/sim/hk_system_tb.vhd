@@ -5,7 +5,8 @@
 -- the time in microseconds at which its stop bit ended and two hex digits.
 --
 -- The bench ends by itself DRAIN_US after ROWS lines of the table have been played: without an error
--- if every character had a start and a stop bit and no bit was unknown. The other generics are those
+-- if every character had a start and a stop bit and no bit was unknown; and LIMIT_US after the reset
+-- even if the sensor was never read, unless that is 0. The other generics are those
 -- of hk_system and of the model, whose faults they are; a fault at 0 never comes.
 library ieee;
 use ieee.std_logic_1164.all;
@@ -19,6 +20,7 @@ entity hk_system_tb is
     RESULT_FILE    : string   := "bytes.txt";
     ROWS           : natural;
     DRAIN_US       : positive := 2000;
+    LIMIT_US       : natural  := 0;
     CLOCK_HZ       : positive := 4000000;
     BAUD           : positive := 1000000;
     TIME_DIVISOR   : positive := 1;
@@ -163,7 +165,11 @@ begin
 
   finish : process
   begin
-    wait until rows_played >= ROWS;
+    if LIMIT_US = 0 then
+      wait until rows_played >= ROWS;
+    else
+      wait until rows_played >= ROWS for LIMIT_US * 1 us;
+    end if;
     wait for DRAIN_US * 1 us;
     ended <= true;
     wait;

@@ -11,7 +11,8 @@ from hostkit.emulation.comparison import EmulationResult, compare, compare_with_
 from hostkit.emulation.fault import Fault
 from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
-from hostkit.emulation.system_faults import fault_generics
+from hostkit.emulation.system_faults import Generics, fault_generics
+from hostkit.errors import EmulationError
 from hostkit.link.decoder import Decoder
 from hostkit.link.tlog import TlogWriter
 from hostkit.recordings import Recording
@@ -79,7 +80,10 @@ def emulate_system(
     """
     timing = timing_of(design)
     counts, table = table_of(design, recording, samples)
-    run = run_system(folder, table, timing, fault_generics(faults, design, timing))
+    generics: Generics = ()
+    if faults:
+        generics = fault_generics(faults, design, timing, _first_us(folder, table, timing))
+    run = run_system(folder, table, timing, generics)
     if record is not None:
         write_tlog(run, record)
     board = BoardRun(stream=run.stream)
@@ -88,6 +92,15 @@ def emulate_system(
     frames, trace = heard_of(board, target, design)
     heard = frames, replace(trace, time_us=trace.time_us * timing.time_divisor)
     return compare_with_faults(target, design, counts, board, heard, faults, None)
+
+
+def _first_us(folder: Path, table: IntArray, timing: SystemTiming) -> int:
+    """Return when the first row is sampled if nothing goes wrong."""
+    frames = Decoder().feed(run_system(folder, table[:1], timing).stream)
+    times = [frame.message.time_usec for frame in frames if frame.name == "TILT_SAMPLE"]
+    if not times:
+        raise EmulationError("the simulated system sent no sample")
+    return int(times[0])
 
 
 def write_tlog(run: SystemRun, path: Path) -> None:

@@ -1,6 +1,5 @@
 """The bench of a whole FPGA system in GHDL: from a table of counts to the bytes of its link."""
 
-import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -22,6 +21,9 @@ BUILD = "build-system"
 
 BUILD_TIMEOUT_S = 300.0
 RUN_TIMEOUT_S = 120.0
+LIMIT_US = 800_000
+LIMIT_ROW_US = 4000
+"""The bench ends after so long, the first divided, even if the sensor was never read."""
 SAMPLE_TIMEOUT_S = 2.0
 """Added to the run's limit for every sample; GHDL takes about a twentieth of it."""
 
@@ -81,7 +83,7 @@ def build_system(folder: Path) -> None:
         raise BuildError(f"{folder} holds no {BENCH}.vhd; generate it for an FPGA target first")
     build = folder / BUILD
     build.mkdir(exist_ok=True)
-    _ghdl(build, "-i", STANDARD, *(os.path.join("..", name) for name in sources))
+    _ghdl(build, "-i", STANDARD, *(f"../{name}" for name in sources))
     _ghdl(build, "-m", STANDARD, OPTIMISE, BENCH)
 
 
@@ -125,6 +127,7 @@ def run_system(
             "BAUD": timing.baud,
             "TIME_DIVISOR": timing.time_divisor,
             "ROWS": len(table),
+            "LIMIT_US": LIMIT_US // timing.time_divisor + LIMIT_ROW_US * len(table),
         } | dict(generics)
         _run(build, [f"-g{key}={value}" for key, value in wanted.items()], len(table))
         return _parsed(heard)

@@ -9,22 +9,27 @@ from hostkit.records import FilterDesign
 from hostkit.sensors.mpu6050 import settle_samples
 
 US_PER_S = 1e6
-SET_UP_US = 245_000.0
-"""About the time the driver takes before samples come; the sensor's waits are most of it."""
-SET_UP_ADDRESSINGS = 47
-ADDRESSINGS = 4
+BEFORE_US = 30
+"""So long before its sample a fault strikes, between two transfers."""
+SET_UP_ADDRESSINGS = 40
+ADDRESSINGS = 4.4
 """Times the sensor is addressed, about: before samples come, and for each of them."""
 
 Generics = tuple[tuple[str, str], ...]
 
 
 def fault_generics(
-    faults: tuple[Fault, ...], design: FilterDesign, timing: SystemTiming
+    faults: tuple[Fault, ...], design: FilterDesign, timing: SystemTiming, first_us: int
 ) -> Generics:
     """Return the generics of the bench that let faults strike.
 
-    The model of the sensor knows the time since its supply came, or how often it was addressed, so a
-    fault may come some samples beside its row.
+    What the sensor does not acknowledge, or answers late, is counted in addressings, so these may
+    come some samples beside their row.
+
+    Parameters
+    ----------
+    first_us
+        When the first row is sampled in a run without faults.
 
     Raises
     ------
@@ -39,51 +44,35 @@ def fault_generics(
                 f"the simulated sensor of an FPGA has no fault {fault.kind.name}; "
                 f"it has: {', '.join(KINDS)}"
             )
-        pairs = make(fault, design, timing)
+        row, rate_hz = fault.row(design.rate_hz), design.rate_hz
+        sampled = row + settle_samples(design.sensor, rate_hz)
+        pairs = make(
+            fault.amount,
+            first_us + round(US_PER_S * row / rate_hz / timing.time_divisor) - BEFORE_US,
+            SET_UP_ADDRESSINGS + round(ADDRESSINGS * sampled),
+        )
         if found.keys() & pairs.keys():
             raise EmulationError(f"the fault {fault.kind.name} can strike once in a run")
         found |= {name: str(value) for name, value in pairs.items()}
     return tuple(found.items())
 
 
-def _at_us(fault: Fault, design: FilterDesign, timing: SystemTiming) -> int:
-    settling_us = US_PER_S * design.period_s * settle_samples(design.sensor, design.rate_hz)
-    begin_us = SET_UP_US + settling_us
-    return round((begin_us + US_PER_S * fault.time_s) / timing.time_divisor)
-
-
-def _at_addressing(fault: Fault, design: FilterDesign) -> int:
-    samples = settle_samples(design.sensor, design.rate_hz) + fault.row(design.rate_hz)
-    return SET_UP_ADDRESSINGS + ADDRESSINGS * samples
-
-
-Make = Callable[[Fault, FilterDesign, SystemTiming], dict[str, int]]
+Make = Callable[[int, int, int], dict[str, int]]
+"""From the amount of a fault, its time and its addressing to generics."""
 
 KINDS: dict[str, Make] = {
-    "nack-address": lambda fault, design, _: {
-        "NACK_AT": _at_addressing(fault, design),
-        "NACKS": max(1, fault.amount),
+    "nack-address": lambda amount, _, addressing: {"NACK_AT": addressing, "NACKS": max(1, amount)},
+    "torn-burst": lambda _, at_us, __: {"TORN_AT_US": at_us},
+    "stuck-sda": lambda amount, at_us, _: {"STUCK_AT_US": at_us, "STUCK_CLOCKS": max(1, amount)},
+    "clock-stretch": lambda amount, _, addressing: {"STRETCH_AT": addressing, "STRETCH_US": amount},
+    "wrong-identity": lambda amount, _, __: {"IDENTITY": amount & 0xFF},
+    "register-upset": lambda amount, at_us, _: {
+        "UPSET_AT_US": at_us,
+        "UPSET_REGISTER": amount >> 8,
+        "UPSET_BITS": amount & 0xFF,
     },
-    "torn-burst": lambda fault, design, timing: {"TORN_AT_US": _at_us(fault, design, timing)},
-    "stuck-sda": lambda fault, design, timing: {
-        "STUCK_AT_US": _at_us(fault, design, timing),
-        "STUCK_CLOCKS": max(1, fault.amount),
-    },
-    "clock-stretch": lambda fault, design, _: {
-        "STRETCH_AT": _at_addressing(fault, design),
-        "STRETCH_US": fault.amount,
-    },
-    "wrong-identity": lambda fault, design, timing: {"IDENTITY": fault.amount & 0xFF},
-    "register-upset": lambda fault, design, timing: {
-        "UPSET_AT_US": _at_us(fault, design, timing),
-        "UPSET_REGISTER": fault.amount >> 8,
-        "UPSET_BITS": fault.amount & 0xFF,
-    },
-    "self-reset": lambda fault, design, timing: {"RESET_AT_US": _at_us(fault, design, timing)},
-    "frozen-data": lambda fault, design, timing: {"FROZEN_AT_US": _at_us(fault, design, timing)},
-    "lost-data-ready": lambda fault, design, timing: {
-        "MUTE_AT_US": _at_us(fault, design, timing),
-        "MUTE_SAMPLES": fault.amount,
-    },
+    "self-reset": lambda _, at_us, __: {"RESET_AT_US": at_us},
+    "frozen-data": lambda _, at_us, __: {"FROZEN_AT_US": at_us},
+    "lost-data-ready": lambda amount, at_us, _: {"MUTE_AT_US": at_us, "MUTE_SAMPLES": amount},
 }
 """The faults that the model has."""
