@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 from hostkit.spec import FixedPointSpec
 
-ARCTAN_CLOCKS = {"roll": 29, "pitch": 54, "both": 54}
-ARCSIN_CLOCKS = {"roll": 56, "pitch": 57, "both": 84}
+ARCTAN_CLOCKS = {"roll": 30, "pitch": 54, "both": 54}
+ARCSIN_CLOCKS = {"roll": 57, "pitch": 58, "both": 82}
+INTEGRAL_CLOCKS = 1
 HAND_OVER_CLOCKS = 1
 """A result waits one clock for the next sample to be taken."""
 
@@ -36,8 +37,7 @@ def filter_latency(spec: FixedPointSpec, *, pipelined: bool = False) -> Latency:
     if pipelined:
         return Latency(latency=0, interval=1)
     axes = "both" if len(spec.axes) > 1 else spec.axes[0]
-    arcsin = spec.tilt == "arcsin"
-    clocks = (ARCSIN_CLOCKS if arcsin else ARCTAN_CLOCKS)[axes]
+    clocks = (ARCSIN_CLOCKS if spec.tilt == "arcsin" else ARCTAN_CLOCKS)[axes]
     if spec.integral is not None:
-        clocks += 2 if arcsin and axes == "both" else 1
+        clocks += INTEGRAL_CLOCKS
     return Latency(latency=clocks, interval=clocks + HAND_OVER_CLOCKS)

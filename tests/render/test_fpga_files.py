@@ -94,7 +94,7 @@ def test_the_numbers_of_the_readme_are_those_of_the_design() -> None:
     assert "Not measured" in text
     files = render_target(all_parameters(tilt="arcsin"), TARGETS["ecp5"])
     text = next(file.content for file in files if file.path == "README.md")
-    assert "| latency of the filter | 86 clocks, 3.44 us at 25000000 Hz |" in text
+    assert "| latency of the filter | 83 clocks, 3.32 us at 25000000 Hz |" in text
     assert "| frame of a sample | 63 bytes" in text
 
 
