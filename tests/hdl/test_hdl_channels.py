@@ -27,14 +27,14 @@ def channel_core(
     request: pytest.FixtureRequest,
     tmp_path_factory: pytest.TempPathFactory,
     ghdl_installed: None,
-) -> Iterator[Core]:
+) -> Core:
     built = {
         "eta": design(),
         "all": all_parameters(),
         "arcsin": design(tilt="arcsin", more=CONSTANT),
         "roll": design(axes="roll"),
     }[request.param]
-    yield build_core(built, tmp_path_factory.mktemp("channels"))
+    return build_core(built, tmp_path_factory.mktemp("channels"))
 
 
 def interleaved(samples: int, channels: int) -> IntArray:
