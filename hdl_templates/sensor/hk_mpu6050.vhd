@@ -434,7 +434,8 @@ begin
         verify_r  <= '0';
         place_r   <= to_unsigned(begin_step_c, 5);
         trouble_r <= (others => '0');
-        state_r   <= decode;
+        gone_v    := true;
+        state_r   <= recover;
       end if;
 
       -- An edge while a sample is read announces the next one.
@@ -457,8 +458,8 @@ begin
       end if;
 
       if rst = '1' then
-        command_valid_r <= '0';
-        state_r         <= decode;
+        command_valid_r <= '1';
+        state_r         <= recover;
         part_r          <= set_up;
         place_r         <= to_unsigned(begin_step_c, 5);
         more_r          <= to_unsigned(first_set_c, 5);

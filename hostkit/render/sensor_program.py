@@ -17,7 +17,7 @@ LONG_WAIT, SHORT_WAIT, RETREAT = 26, 4, 245
 """100 ms, 10 ms and 1 s in ticks of 4.096 ms, of which the first may be short."""
 
 GAP_STEP, OVERDUE_STEP, UNLOOKED_STEP, REFUSED_STEP, BEGIN_STEP = 27, 28, 29, 30, 31
-"""Places of the waits. Behind the last of them comes the first step, and it is behind REFUSED_STEP."""
+"""Places of the waits. The last place, behind REFUSED_STEP, comes before the first step."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -64,7 +64,7 @@ def in_order_of_the_bench(row: Row) -> Row:
 
 
 def build_sensor(folder: Path, *, change: tuple[str, str, str] | None = None) -> Path:
-    """Render and build the bench; `change` is a file, a text in it and what stands there instead."""
+    """Build the bench; `change` is a file, a text in it, and what stands there instead."""
     write(render_target(design(rate_hz=RATE_HZ), TARGETS["spartan3adsp"]), folder)
     if change is not None:
         name, good, bad = change

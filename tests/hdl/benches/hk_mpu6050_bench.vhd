@@ -170,7 +170,8 @@ begin
       RESET_AT_US      => SELF_RESET_AT_US,
       FROZEN_AT_US     => FROZEN_AT_US,
       MUTE_AT_US       => MUTE_AT_US,
-      MUTE_SAMPLES     => MUTE_SAMPLES
+      MUTE_SAMPLES     => MUTE_SAMPLES,
+      LENIENT_AT_US    => RESET_AT_US
     )
     port map (
       scl     => scl,
