@@ -1,6 +1,6 @@
--- AXI4-Lite slave before the registers. Addresses and data are taken independently, one of each at a
--- time; a read and a write that both wait take turns. Protection bits are ignored. What the registers
--- refuse is answered SLVERR, all else OKAY.
+-- AXI4-Lite slave before the registers. Addresses and data are taken independently, one of each at
+-- a time; of a read and a write that both wait the read goes first. Protection bits are ignored.
+-- What the registers refuse is answered SLVERR, all else OKAY.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -57,7 +57,6 @@ architecture rtl of hk_axi4lite is
 
   signal writing_r   : std_logic;  -- requested, not acknowledged
   signal reading_r   : std_logic;
-  signal read_last_r : std_logic;  -- the request before was a read
   signal written_r   : std_logic;  -- a response waits
   signal have_read_r : std_logic;
   signal write_bad_r : std_logic;
@@ -77,8 +76,9 @@ begin
   can_write <= has_write_address_r and has_write_data_r and not written_r
                and not writing_r and not reading_r;
   can_read  <= has_read_address_r and not have_read_r and not writing_r and not reading_r;
-  to_write  <= can_write and not (can_read and not read_last_r);
-  to_read   <= can_read and not (can_write and read_last_r);
+  -- A read cannot ask again the clock after its acknowledge: no write waits longer than one read.
+  to_read  <= can_read;
+  to_write <= can_write and not can_read;
 
   address       <= read_address_r when to_read = '1' else write_address_r;
   write         <= to_write;
@@ -104,12 +104,10 @@ begin
       end if;
 
       if to_write = '1' then
-        writing_r   <= '1';
-        read_last_r <= '0';
+        writing_r <= '1';
       end if;
       if to_read = '1' then
-        reading_r   <= '1';
-        read_last_r <= '1';
+        reading_r <= '1';
       end if;
 
       if acknowledge = '1' then
@@ -141,11 +139,12 @@ begin
         has_read_address_r  <= '0';
         writing_r           <= '0';
         reading_r           <= '0';
-        read_last_r         <= '0';
         written_r           <= '0';
         have_read_r         <= '0';
         write_bad_r         <= '0';
         read_bad_r          <= '0';
+        write_address_r     <= (others => '0');  -- only for a quiet simulation
+        read_address_r      <= (others => '0');
       end if;
     end if;
   end process;

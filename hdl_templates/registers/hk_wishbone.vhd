@@ -1,5 +1,5 @@
--- Wishbone B4 slave before the registers: classic cycles, 32-bit data, byte addresses. A write takes
--- two clocks and a read three; acknowledge and error come from registers and last one clock.
+-- Wishbone B4 slave before the registers: classic cycles, 32-bit data, byte addresses. A write
+-- takes two clocks and a read three; acknowledge and error last one clock.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

@@ -65,6 +65,7 @@ class RegisterContext:
     """A register as the languages write it; `constant` is its word address in VHDL."""
 
     name: str
+    anchor: str
     constant: str
     description: str
     address: int
@@ -187,6 +188,7 @@ def _register(register: Register) -> RegisterContext:
     fields = tuple(_field(register, field) for field in register.fields)
     return RegisterContext(
         name=register.name,
+        anchor=register.name.lower(),
         constant=_constant(register),
         description=register.description,
         address=register.address,

@@ -65,7 +65,7 @@ def setting_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
         Register(
             name=setting.name.upper(),
             address=SETTINGS_ADDRESS + WORD_BYTES * i,
-            description="Setting: written now, effective after COMMIT.",
+            description=f"Setting: {setting.description}.",
             fields=(
                 Field(
                     name="VALUE",
