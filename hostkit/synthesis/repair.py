@@ -19,8 +19,9 @@ _END = "endmodule\n"
 _SIGNED = re.compile(r"assign (\w+) = \{\{\d+\{(\w+)\[\d+\]\}\}, (\w+)\}; // sext")
 _UNSIGNED = re.compile(r"assign (\w+) = \{\d+'b0+, \w+\}; +// +uext")
 _DECLARED = re.compile(r"^(?:module|  (?:wire|reg)(?: \[[^]]*\])?) (\w+)", re.MULTILINE)
+_CASE = re.compile(r"^ *case[xz]? .*?^ *endcase", re.MULTILINE | re.DOTALL)
+_CHOICE = re.compile(r"^ *(\d+)'b([01]+):", re.MULTILINE)
 _FAULTS = (
-    ("a case without a default", re.compile(r"^\s*case[xz]?\b", re.MULTILINE)),
     ("a signed shift without its sign", re.compile(r"\$signed\([^)]*\) >> ")),
     ("a long constant as a text", re.compile(r'"')),
 )
@@ -97,10 +98,21 @@ def check(text: str) -> None:
     BuildError
         Naming the fault and the VHDL line it comes from.
     """
+    for case in _CASE.finditer(text):
+        if not _is_full(case.group()):
+            place = place_of(text, case.start())
+            raise BuildError(f"GHDL wrote a case without a default, at {place}")
     for fault, pattern in _FAULTS:
         match = pattern.search(text)
         if match is not None:
             raise BuildError(f"GHDL wrote {fault}, at {place_of(text, match.start())}")
+
+
+def _is_full(case: str) -> bool:
+    """Say whether a case has every choice, as one that reads a vector by an index."""
+    choices = {(int(width), digits) for width, digits in _CHOICE.findall(case)}
+    widths = {width for width, _ in choices}
+    return len(widths) == 1 and len(choices) == 2 ** widths.pop()
 
 
 def place_of(text: str, position: int) -> str:
