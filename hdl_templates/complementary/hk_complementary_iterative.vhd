@@ -57,18 +57,29 @@ architecture rtl of hk_complementary_iterative is
   );
   signal state_r : state_t;
 
-  -- Steps of preparing. A product is there two steps after its operands.
+  -- With the arc sine the squares of the components come first.
+  function squares return natural is
+  begin
+    if uses_arcsin_c then
+      return 2;
+    end if;
+    return 0;
+  end function squares;
+
+  -- Steps of preparing. A product is there two steps after its operands. The arc tangent of two
+  -- components multiplies from step turn_digits_c on, so the last operands come before.
   signal step_r : unsigned(3 downto 0);
   constant square_roll_c  : natural := 0;  -- operands
   constant square_pitch_c : natural := 1;
-  constant rate_roll_c    : natural := 2;
-  constant rate_pitch_c   : natural := 3;
-  constant first_force_c  : natural := 4;
-  constant turn_roll_c    : natural := 4;  -- sums
-  constant turn_pitch_c   : natural := 5;
-  constant bias_roll_c    : natural := 6;
-  constant bias_pitch_c   : natural := 7;
-  constant judge_c        : natural := 9;  -- the gate
+  constant rate_roll_c    : natural := squares;
+  constant rate_pitch_c   : natural := squares + 1;
+  constant first_force_c  : natural := squares + 2;
+  constant last_force_c   : natural := squares + 4;
+  constant turn_roll_c    : natural := rate_roll_c + 2;  -- sums
+  constant turn_pitch_c   : natural := rate_pitch_c + 2;
+  constant bias_roll_c    : natural := turn_pitch_c + 1;
+  constant bias_pitch_c   : natural := turn_pitch_c + 2;
+  constant judge_c        : natural := last_force_c + 3;  -- the gate
 
   signal axis_r       : axis_t;
   signal channel_r    : unsigned(channel_bits_c - 1 downto 0);
@@ -110,7 +121,7 @@ architecture rtl of hk_complementary_iterative is
   signal tilt         : signed(31 downto 0);
 
   signal arctan_multiply    : std_logic;
-  signal arctan_factor      : signed(16 downto 0);
+  signal arctan_factor      : signed(22 downto 0);
   signal arctan_coefficient : signed(17 downto 0);
 
   -- A stored channel: angles, with an integral the biases, and whether it has had a sample.
@@ -235,7 +246,7 @@ begin
           coefficient_r <= settings.rate_gain_pitch;
           multiply_r    <= '1';
         end if;
-        if uses_gate_c and step_r >= first_force_c then
+        if uses_gate_c and step_r >= first_force_c and step_r <= last_force_c then
           factor_r      <= resize(force_r(0), 32);
           coefficient_r <= resize(force_r(0), 18);
           multiply_r    <= '1';
@@ -406,10 +417,12 @@ begin
     signal word_r   : std_logic_vector(word_bits_c - 1 downto 0);
     signal word     : std_logic_vector(word_bits_c - 1 downto 0);
     signal address  : unsigned(channel_bits_c - 1 downto 0);
+    signal read     : std_logic;
     signal write    : std_logic;
   begin
 
     address <= in_channel when state_r = idle else channel_r;
+    read    <= in_valid when state_r = idle else '0';
     write   <= '1' when state_r = finished or state_r = clearing else '0';
 
     memory : process (clk)
@@ -418,7 +431,9 @@ begin
         if write = '1' then
           memory_r(to_integer(address)) <= word;
         end if;
-        word_r <= memory_r(to_integer(address));
+        if read = '1' then
+          word_r <= memory_r(to_integer(address));
+        end if;
       end if;
     end process memory;
 
