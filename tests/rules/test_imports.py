@@ -26,7 +26,17 @@ FLOORS = (
     ("recordings",),
     ("attitude",),
     ("design_file",),
-    ("records", "spec", "mounting", "registry", "fixedpoint", "units", "errors", "files"),
+    (
+        "records",
+        "spec",
+        "mounting",
+        "registry",
+        "fixedpoint",
+        "units",
+        "errors",
+        "files",
+        "identifiers",
+    ),
 )
 """From top to bottom; an import may only point down, or stay within its room."""
 

@@ -1,0 +1,286 @@
+"""What templates see of the registers: names, literals and expressions ready to be placed."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from hostkit.render.registers.records import (
+    WORD_BITS,
+    WORD_BYTES,
+    Field,
+    Register,
+    RegisterMap,
+)
+
+QUARTER_BYTES = 64
+ACCESS_TEXTS = {
+    "ro": "read only",
+    "rw": "read, write",
+    "w1c": "sticky, 1 clears",
+    "pulse": "1 acts, reads 0",
+    "pop": "a read takes it",
+}
+RDL_ACCESS = {
+    "ro": ("sw = r", "hw = w"),
+    "rw": ("sw = rw", "hw = r"),
+    "w1c": ("sw = rw", "onwrite = woclr", "hw = na", "hwset"),
+    "pulse": ("sw = w", "hw = r", "singlepulse"),
+    "pop": ("sw = r", "hw = w", "swacc"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FieldContext:
+    """A field as the languages write it.
+
+    Attributes
+    ----------
+    macro
+        Its name with that of the register, for C.
+    bits, slice
+        Its bits, for people and as the index of a VHDL vector.
+    read
+        VHDL of what a read shows, of the width of the slice; empty where it reads 0.
+    """
+
+    name: str
+    macro: str
+    description: str
+    access: str
+    element: str
+    kind: str
+    low: int
+    high: int
+    width: int
+    bits: str
+    slice: str
+    mask: int
+    reset: int
+    present: bool
+    read: str
+    properties: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegisterContext:
+    """A register as the languages write it; `constant` is its word address in VHDL."""
+
+    name: str
+    anchor: str
+    constant: str
+    description: str
+    address: int
+    word: int
+    reset: int
+    writable: bool
+    present: bool
+    fields: tuple[FieldContext, ...]
+    shown: tuple[FieldContext, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SettingContext:
+    """A setting: the element of the record, its type and its highest bit."""
+
+    constant: str
+    element: str
+    kind: str
+    top: int
+    present: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElementContext:
+    """One element of the record of what comes from the core."""
+
+    name: str
+    type: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WordRange:
+    """Neighbouring words, first and last included."""
+
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuarterContext:
+    """Registers of one quarter of the address space that show anything but 0."""
+
+    number: int
+    registers: tuple[RegisterContext, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegistersContext:
+    """The register map for templates.
+
+    Attributes
+    ----------
+    inputs
+        What comes from the core.
+    settings, events
+        Those that the design has, and the fields of EVENTS.
+    all_settings
+        With those that it lacks.
+    coefficients
+        Present settings of less than a word.
+    known, written
+        Words that exist, and those that a write may go to.
+    """
+
+    registers: tuple[RegisterContext, ...]
+    quarters: tuple[QuarterContext, ...]
+    inputs: tuple[ElementContext, ...]
+    all_settings: tuple[SettingContext, ...]
+    settings: tuple[SettingContext, ...]
+    coefficients: tuple[SettingContext, ...]
+    events: tuple[FieldContext, ...]
+    setting_words: WordRange
+    known: tuple[WordRange, ...]
+    written: tuple[WordRange, ...]
+    address_bits: int = 8
+
+
+def registers_context(registers: RegisterMap) -> RegistersContext:
+    """Lay out a map."""
+    laid = tuple(_register(register) for register in registers.registers)
+    words = [r for r in registers.registers if r.fields[0].source == "setting"]
+    settings = tuple(_setting(register) for register in words)
+    return RegistersContext(
+        registers=laid,
+        quarters=tuple(_quarter(number, laid) for number in range(4)),
+        inputs=_inputs(registers),
+        all_settings=settings,
+        settings=tuple(s for s in settings if s.present),
+        coefficients=tuple(s for s in settings if s.present and s.top < WORD_BITS - 1),
+        events=next(r.fields for r in laid if r.name == "EVENTS"),
+        setting_words=_ranges(words)[0],
+        known=_ranges(registers.registers),
+        written=_ranges([r for r in registers.registers if r.writable]),
+    )
+
+
+def _quarter(number: int, registers: tuple[RegisterContext, ...]) -> QuarterContext:
+    return QuarterContext(
+        number=number,
+        registers=tuple(r for r in registers if r.shown and r.address // QUARTER_BYTES == number),
+    )
+
+
+def _setting(register: Register) -> SettingContext:
+    field = register.fields[0]
+    return SettingContext(
+        constant=_constant(register),
+        element=field.element,
+        kind=field.kind,
+        top=field.high,
+        present=field.present,
+    )
+
+
+def _constant(register: Register) -> str:
+    return f"{register.name.lower()}_word_c"
+
+
+def _register(register: Register) -> RegisterContext:
+    fields = tuple(_field(register, field) for field in register.fields)
+    return RegisterContext(
+        name=register.name,
+        anchor=register.name.lower(),
+        constant=_constant(register),
+        description=register.description,
+        address=register.address,
+        word=register.address // WORD_BYTES,
+        reset=register.reset,
+        writable=register.writable,
+        present=register.present,
+        fields=fields,
+        shown=tuple(field for field in fields if field.read),
+    )
+
+
+def _field(register: Register, field: Field) -> FieldContext:
+    return FieldContext(
+        name=field.name,
+        macro=f"{register.name}_{field.name}",
+        description=field.description,
+        access=ACCESS_TEXTS[field.access],
+        element=field.element,
+        kind=field.kind,
+        low=field.low,
+        high=field.high,
+        width=field.width,
+        bits=str(field.low) if field.width == 1 else f"{field.high}:{field.low}",
+        slice=_slice(field),
+        mask=field.mask,
+        reset=field.reset,
+        present=field.present,
+        read=_read(field) if field.readable else "",
+        properties=_properties(field),
+    )
+
+
+def _slice(field: Field) -> str:
+    """Return the bits that a read sets: a number of less than a word is extended by its sign."""
+    if field.source == "setting":
+        return f"{WORD_BITS - 1} downto 0"
+    return str(field.low) if field.width == 1 else f"{field.high} downto {field.low}"
+
+
+def _read(field: Field) -> str:
+    if field.source == "constant":
+        quote = "'" if field.width == 1 else '"'
+        return f"{quote}{field.reset:0{field.width}b}{quote}" if field.reset else ""
+    if field.source == "setting":
+        return f"std_logic_vector(resize(written_r.{field.element}, {WORD_BITS}))"
+    if field.source == "decoder" or field.latched_by:
+        name = f"{field.element}_r"
+    else:
+        name = f"from_core.{field.element}{_part(field)}"
+    return f"std_logic_vector({name})" if field.kind != "bits" else name
+
+
+def _part(field: Field) -> str:
+    """Return the index of the part of a hardware element that a word takes."""
+    if field.kind != "unsigned" or field.width < WORD_BITS:
+        return ""
+    return f"({field.element_low + field.width - 1} downto {field.element_low})"
+
+
+def _properties(field: Field) -> tuple[str, ...]:
+    if field.source == "constant" or not field.present:
+        return ("sw = r", "hw = na", f"reset = {field.reset}")
+    own = RDL_ACCESS[field.access]
+    return own if field.access in ("ro", "pop") else (*own, f"reset = {field.reset}")
+
+
+def _inputs(registers: RegisterMap) -> tuple[ElementContext, ...]:
+    """Return the elements by the order of their fields; one in two words has the width of both."""
+    width: dict[str, int] = {}
+    kinds: dict[str, str] = {}
+    for register in registers.registers:
+        for field in register.fields:
+            if field.source == "core" or field.access == "w1c":
+                needed = field.element_low + field.width
+                width[field.element] = max(width.get(field.element, 0), needed)
+                kinds[field.element] = field.kind
+    return tuple(
+        ElementContext(name=name, type=_vhdl_type(kinds[name], bits))
+        for name, bits in width.items()
+    )
+
+
+def _vhdl_type(kind: str, width: int) -> str:
+    if width == 1:
+        return "std_logic"
+    name = "std_logic_vector" if kind == "bits" else kind
+    return f"{name}({width - 1} downto 0)"
+
+
+def _ranges(registers: Iterable[Register]) -> tuple[WordRange, ...]:
+    words = [register.address // WORD_BYTES for register in registers]
+    firsts = [word for word in words if word - 1 not in words]
+    lasts = [word for word in words if word + 1 not in words]
+    return tuple(WordRange(first=a, last=b) for a, b in zip(firsts, lasts, strict=True))
