@@ -17,6 +17,7 @@ from hostkit.records import FilterDesign
 from hostkit.render import FpgaOptions, render_target, write
 from hostkit.render.fpga_options import Bus
 from hostkit.render.latency import filter_latency
+from hostkit.synthesis import convert
 from hostkit.targets import TARGETS
 
 STANDARD = "--std=93c"
@@ -47,10 +48,11 @@ def analyse_in_order(folder: Path, target: str, bus: Bus, top_name: str) -> None
         ("ecp5", "axi4lite"),
     ],
 )
-def test_ghdl_takes_the_sources_in_the_order_of_the_project(
+def test_ghdl_takes_the_sources_in_the_order_of_the_project_and_converts_them(
     target: str, bus: Bus, tmp_path: Path, ghdl_installed: None
 ) -> None:
     analyse_in_order(tmp_path, target, bus, "tilt_board")
+    assert convert(tmp_path, "hk_system").products > 0
 
 
 @pytest.mark.parametrize(
