@@ -30,14 +30,14 @@ from hostkit.targets import TARGETS
 
 ACCEL, GYRO = count_vectors()
 LATENCY_CYCLES = {
-    ("atan2", "roll"): 39,
-    ("atan2", "pitch"): 62,
-    ("atan2", "both"): 62,
-    ("arcsin", "roll"): 65,
-    ("arcsin", "pitch"): 65,
-    ("arcsin", "both"): 65,
+    ("atan2", "roll"): 43,
+    ("atan2", "pitch"): 70,
+    ("atan2", "both"): 70,
+    ("arcsin", "roll"): 71,
+    ("arcsin", "pitch"): 71,
+    ("arcsin", "both"): 71,
 }
-CHANNEL_CYCLES = 7
+CHANNEL_CYCLES = 9
 ENOUGH = 12
 """Channels with which no sample meets the one before it."""
 

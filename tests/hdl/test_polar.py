@@ -7,7 +7,7 @@ from designs import design
 from hostkit.render import render_target, write
 from hostkit.targets import TARGETS
 
-PIPELINED_LATENCY = 60
+PIPELINED_LATENCY = 67
 ITERATIVE_LATENCIES = (31, 61)
 
 
