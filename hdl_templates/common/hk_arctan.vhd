@@ -90,8 +90,9 @@ begin
   turned <= along_r + (unsigned(product(27 downto 0)) & "00") when state_r = widening
             else along_r + (unsigned(product(30 downto 16)) & "000");
 
-  -- The turn widens the larger component. The first eight digits, squared, correct the length while the others are made. The stretch of
-  -- the second vector comes before the last digit, the slope with it.
+  -- The turn widens the larger component. The first eight digits, squared, correct the length while
+  -- the others are made. The stretch of the second vector comes before the last digit, and the slope
+  -- with it.
   operands : process (state_r, count_r, digits_r, digits, along_r, part_r, y_second, turn_r,
                       product)
   begin

@@ -211,7 +211,7 @@ begin
             or at_end_of_range(gyro_x) or at_end_of_range(gyro_y) or at_end_of_range(gyro_z) then
             saturated_r <= '1';
           end if;
-          state_r      <= preparing;
+          state_r <= preparing;
         end if;
 
       elsif state_r = preparing then
@@ -246,8 +246,8 @@ begin
           coefficient_r <= settings.rate_gain_pitch;
           multiply_r    <= '1';
         end if;
-        if uses_gate_c
-          and (step_r(first_force_c) or step_r(first_force_c + 1) or step_r(last_force_c)) = '1' then
+        if uses_gate_c and (step_r(first_force_c) or step_r(first_force_c + 1)
+                            or step_r(last_force_c)) = '1' then
           factor_r      <= resize(force_r(0), 32);
           coefficient_r <= resize(force_r(0), 18);
           multiply_r    <= '1';
