@@ -41,39 +41,103 @@ end entity hk_mavlink_tx;
 
 architecture rtl of hk_mavlink_tx is
 
-  -- Addresses of the bytes of a frame: payload, trailer, header. Counting on leads from measuring
-  -- the payload to the header, and from there to the payload again.
+  -- Places of the bytes of a frame: the payload from 1, the trailer, the header. Counting on leads
+  -- from measuring the payload to the header, and from there to the payload again.
+  constant payload_at_c  : natural := 1;
   constant payload_end_c : natural := 51;
-  constant extra_at_c    : natural := 51;  -- goes into the checksum only
-  constant crc_at_c      : natural := 52;
-  constant end_at_c      : natural := 53;
-  constant magic_at_c    : natural := 54;
-  constant length_at_c   : natural := 55;
-  constant sequence_at_c : natural := 58;
-  constant sender_at_c   : natural := 59;
-  constant id_at_c       : natural := 61;
+  constant extra_at_c    : natural := 52;  -- goes into the checksum only
+  constant end_at_c      : natural := 54;  -- second byte of the checksum
+  constant magic_at_c    : natural := 55;
+  constant length_at_c   : natural := 56;
+  constant sequence_at_c : natural := 59;
+  constant system_at_c   : natural := 60;
+  constant sender_at_c   : natural := 61;
+  constant id_0_at_c     : natural := 62;
+  constant id_1_at_c     : natural := 63;
+  constant id_2_at_c     : natural := 0;
 
-  constant bytes_c : positive := 64;
+  -- A byte that is the same in every frame of its kind; those that are not named are zero.
+  function fixed (is_heartbeat : std_logic; place : unsigned(5 downto 0)) return hk_byte_t is
+    variable byte_v : hk_byte_t;
+  begin
+    byte_v := x"00";
+    if place = magic_at_c then
+      byte_v := magic_c;
+    elsif place = system_at_c then
+      byte_v := system_id_c;
+    elsif place = sender_at_c then
+      byte_v := component_id_c;
+    elsif is_heartbeat = '0' then
+      if place = id_0_at_c then
+        byte_v := sample_id_0_c;
+      elsif place = id_1_at_c then
+        byte_v := sample_id_1_c;
+      elsif place = id_2_at_c then
+        byte_v := sample_id_2_c;
+      elsif place = extra_at_c then
+        byte_v := sample_crc_extra_c;
+      end if;
+    elsif place = id_0_at_c then
+      byte_v := heartbeat_id_0_c;
+    elsif place = id_1_at_c then
+      byte_v := heartbeat_id_1_c;
+    elsif place = id_2_at_c then
+      byte_v := heartbeat_id_2_c;
+    elsif place = extra_at_c then
+      byte_v := heartbeat_crc_extra_c;
+    elsif place = payload_at_c + heartbeat_type_at_c then
+      byte_v := vehicle_type_c;
+    elsif place = payload_at_c + heartbeat_autopilot_at_c then
+      byte_v := autopilot_c;
+    elsif place = payload_at_c + heartbeat_mavlink_version_at_c then
+      byte_v := mavlink_version_c;
+    end if;
+    return byte_v;
+  end function fixed;
 
-  -- One message after the other; no address leaves it.
-  type bytes_t is array (0 to 2 * bytes_c - 1) of hk_byte_t;
+  function bit_of (byte : hk_byte_t; number : unsigned(2 downto 0)) return std_logic is
+    variable left_v : hk_byte_t;
+  begin
+    left_v := byte;
+    if number(2) = '1' then
+      left_v(3 downto 0) := left_v(7 downto 4);
+    end if;
+    if number(1) = '1' then
+      left_v(1 downto 0) := left_v(3 downto 2);
+    end if;
+    if number(0) = '1' then
+      left_v(0) := left_v(1);
+    end if;
+    return left_v(0);
+  end function bit_of;
 
-  signal bytes  : bytes_t;
-  signal count  : unsigned(7 downto 0);
-  signal flags  : std_logic_vector(7 downto 0);
-  signal hidden : std_logic_vector(63 downto 0);
+  -- A sample's payload in the order of the wire, lowest bit first.
+  constant bits_c : positive := 8 * sample_bytes_c;
+  constant half_c : positive := bits_c / 2;
+  signal payload  : std_logic_vector(bits_c - 1 downto 0);
+  signal flags    : hk_byte_t;
 
-  type state_t is (idle, loading, measuring, summing, offering, finished);
+  -- It is sent from a shift register of half its length, in which a table of four inputs before
+  -- each flip-flop both shifts and loads: of the two halves it loads the one that the bit shifted
+  -- in says, and all of those are fill.
+  signal chain_r : std_logic_vector(half_c - 1 downto 0);
+  signal fill_r  : std_logic;
+  signal load    : std_logic;
+
+  type state_t is (idle, shifting, offering, finished);
   signal state_r : state_t;
 
   signal is_heartbeat_r : std_logic;
-  signal is_measured_r  : std_logic;
+  signal is_measured_r  : std_logic;  -- before, the payload goes by only to find its length
   signal is_closing_r   : std_logic;  -- the checksum itself is being sent
-  signal address_r      : unsigned(5 downto 0);
-  signal last_r         : unsigned(5 downto 0);  -- the last byte of the payload that is not zero
-  signal sequence_r     : unsigned(7 downto 0);
-  signal byte_r         : hk_byte_t;
+  signal place_r        : unsigned(5 downto 0);
   signal bit_r          : unsigned(2 downto 0);
+  signal length_r       : unsigned(5 downto 0);
+  signal sequence_r     : std_logic_vector(7 downto 0);
+  signal carry_r        : std_logic;
+  signal varying        : hk_byte_t;
+  signal next_bit       : std_logic;
+  signal byte_r         : hk_byte_t;
   signal crc_r          : std_logic_vector(15 downto 0);
 
 begin
@@ -87,7 +151,38 @@ begin
   byte_valid      <= '1' when state_r = offering else '0';
   byte_data       <= byte_r;
 
-  count <= resize(last_r, 8) + 1;
+  payload(8 * sample_time_usec_at_c + 63 downto 8 * sample_time_usec_at_c) <=
+    std_logic_vector(time_us);
+  payload(8 * sample_sequence_at_c + 31 downto 8 * sample_sequence_at_c) <=
+    std_logic_vector(sequence);
+  payload(8 * sample_roll_at_c + 31 downto 8 * sample_roll_at_c) <= std_logic_vector(angle_roll);
+  payload(8 * sample_pitch_at_c + 31 downto 8 * sample_pitch_at_c) <=
+    std_logic_vector(angle_pitch);
+  payload(8 * sample_accel_at_c + 47 downto 8 * sample_accel_at_c) <=
+    std_logic_vector(accel_z) & std_logic_vector(accel_y) & std_logic_vector(accel_x);
+  payload(8 * sample_gyro_at_c + 47 downto 8 * sample_gyro_at_c) <=
+    std_logic_vector(gyro_z) & std_logic_vector(gyro_y) & std_logic_vector(gyro_x);
+  payload(8 * sample_temperature_at_c + 15 downto 8 * sample_temperature_at_c) <=
+    std_logic_vector(temperature);
+  payload(8 * sample_i2c_errors_at_c + 15 downto 8 * sample_i2c_errors_at_c) <=
+    std_logic_vector(i2c_errors);
+  digest : for i in 0 to 5 generate
+    payload(8 * (sample_digest_at_c + i) + 7 downto 8 * (sample_digest_at_c + i)) <=
+      design_digest_c(47 - 8 * i downto 40 - 8 * i);
+  end generate digest;
+  payload(8 * sample_flags_at_c + 7 downto 8 * sample_flags_at_c) <= flags;
+  hidden_roll : if hides_bias_roll_c generate
+    payload(
+      8 * sample_hidden_at_c + 32 * bias_roll_word_c + 31 downto
+      8 * sample_hidden_at_c + 32 * bias_roll_word_c
+    ) <= std_logic_vector(bias_roll);
+  end generate hidden_roll;
+  hidden_pitch : if hides_bias_pitch_c generate
+    payload(
+      8 * sample_hidden_at_c + 32 * bias_pitch_word_c + 31 downto
+      8 * sample_hidden_at_c + 32 * bias_pitch_word_c
+    ) <= std_logic_vector(bias_pitch);
+  end generate hidden_pitch;
 
   process (restarted, saturated, retuned)
   begin
@@ -97,170 +192,137 @@ begin
     flags(flag_retuned_c)   <= retuned;
   end process;
 
-  process (bias_roll, bias_pitch)
-    variable hidden_v : std_logic_vector(63 downto 0);
+  -- One half is loaded in front of the payload, the other with the last bit of the first.
+  load <= '1' when
+    (place_r = payload_at_c - 1 and bit_r = 7) or
+    (place_r = payload_at_c + (half_c - 1) / 8 and bit_r = (half_c - 1) mod 8) else '0';
+
+  process (clk)
   begin
-    hidden_v := (others => '0');
-    if hides_bias_roll_c then
-      hidden_v(32 * bias_roll_word_c + 31 downto 32 * bias_roll_word_c) :=
-        std_logic_vector(bias_roll);
+    if rising_edge(clk) then
+      if state_r = shifting then
+        for i in 0 to half_c - 2 loop
+          chain_r(i) <= chain_r(i + 1);
+          if load = '1' then
+            if chain_r(i + 1) = '0' then
+              chain_r(i) <= payload(i);
+            else
+              chain_r(i) <= payload(half_c + i);
+            end if;
+          end if;
+        end loop;
+        chain_r(half_c - 1) <= fill_r;
+        if load = '1' then
+          fill_r <= not fill_r;
+          if fill_r = '0' then
+            chain_r(half_c - 1) <= payload(half_c - 1);
+          else
+            chain_r(half_c - 1) <= payload(bits_c - 1);
+          end if;
+        end if;
+      end if;
+      if state_r = idle or is_heartbeat_r = '1' or place_r = extra_at_c then
+        chain_r <= (others => '0');
+        fill_r  <= '0';
+      end if;
     end if;
-    if hides_bias_pitch_c then
-      hidden_v(32 * bias_pitch_word_c + 31 downto 32 * bias_pitch_word_c) :=
-        std_logic_vector(bias_pitch);
-    end if;
-    hidden <= hidden_v;
   end process;
 
-  process (
-    time_us, sequence, angle_roll, angle_pitch, accel_x, accel_y, accel_z, temperature, gyro_x,
-    gyro_y, gyro_z, i2c_errors, flags, hidden, system_status, count, sequence_r
-  )
-    variable bytes_v : bytes_t;
+  process (is_heartbeat_r, place_r, length_r, system_status)
   begin
-    bytes_v := (others => x"00");
-    for i in 0 to 7 loop
-      bytes_v(sample_time_usec_at_c + i) := std_logic_vector(time_us(8 * i + 7 downto 8 * i));
-    end loop;
-    for i in 0 to 3 loop
-      bytes_v(sample_sequence_at_c + i) := std_logic_vector(sequence(8 * i + 7 downto 8 * i));
-      bytes_v(sample_roll_at_c + i) := std_logic_vector(angle_roll(8 * i + 7 downto 8 * i));
-      bytes_v(sample_pitch_at_c + i) := std_logic_vector(angle_pitch(8 * i + 7 downto 8 * i));
-    end loop;
-    for i in 0 to 1 loop
-      bytes_v(sample_accel_at_c + i) := std_logic_vector(accel_x(8 * i + 7 downto 8 * i));
-      bytes_v(sample_accel_at_c + 2 + i) := std_logic_vector(accel_y(8 * i + 7 downto 8 * i));
-      bytes_v(sample_accel_at_c + 4 + i) := std_logic_vector(accel_z(8 * i + 7 downto 8 * i));
-      bytes_v(sample_gyro_at_c + i) := std_logic_vector(gyro_x(8 * i + 7 downto 8 * i));
-      bytes_v(sample_gyro_at_c + 2 + i) := std_logic_vector(gyro_y(8 * i + 7 downto 8 * i));
-      bytes_v(sample_gyro_at_c + 4 + i) := std_logic_vector(gyro_z(8 * i + 7 downto 8 * i));
-      bytes_v(sample_temperature_at_c + i) :=
-        std_logic_vector(temperature(8 * i + 7 downto 8 * i));
-      bytes_v(sample_i2c_errors_at_c + i) :=
-        std_logic_vector(i2c_errors(8 * i + 7 downto 8 * i));
-    end loop;
-    for i in 0 to 5 loop
-      bytes_v(sample_digest_at_c + i) := design_digest_c(47 - 8 * i downto 40 - 8 * i);
-    end loop;
-    bytes_v(sample_flags_at_c) := flags;
-    for i in 0 to sample_bytes_c - 1 - sample_hidden_at_c loop
-      bytes_v(sample_hidden_at_c + i) := hidden(8 * i + 7 downto 8 * i);
-    end loop;
-    bytes_v(extra_at_c)  := sample_crc_extra_c;
-    bytes_v(id_at_c)     := sample_id_0_c;
-    bytes_v(id_at_c + 1) := sample_id_1_c;
-    bytes_v(id_at_c + 2) := sample_id_2_c;
+    varying <= fixed(is_heartbeat_r, place_r);
+    if place_r = length_at_c then
+      varying <= "00" & std_logic_vector(length_r);
+    elsif is_heartbeat_r = '1' and place_r = payload_at_c + heartbeat_system_status_at_c then
+      varying <= std_logic_vector(system_status);
+    end if;
+  end process;
 
-    -- The fields of a heartbeat that are not named here are zero.
-    bytes_v(bytes_c + heartbeat_type_at_c)            := vehicle_type_c;
-    bytes_v(bytes_c + heartbeat_autopilot_at_c)       := autopilot_c;
-    bytes_v(bytes_c + heartbeat_system_status_at_c)   := std_logic_vector(system_status);
-    bytes_v(bytes_c + heartbeat_mavlink_version_at_c) := mavlink_version_c;
-    bytes_v(bytes_c + extra_at_c)                     := heartbeat_crc_extra_c;
-    bytes_v(bytes_c + id_at_c)                        := heartbeat_id_0_c;
-    bytes_v(bytes_c + id_at_c + 1)                    := heartbeat_id_1_c;
-    bytes_v(bytes_c + id_at_c + 2)                    := heartbeat_id_2_c;
-
-    for message in 0 to 1 loop
-      bytes_v(bytes_c * message + magic_at_c)      := magic_c;
-      bytes_v(bytes_c * message + length_at_c)     := std_logic_vector(count);
-      bytes_v(bytes_c * message + sequence_at_c)   := std_logic_vector(sequence_r);
-      bytes_v(bytes_c * message + sender_at_c)     := system_id_c;
-      bytes_v(bytes_c * message + sender_at_c + 1) := component_id_c;
-    end loop;
-    bytes <= bytes_v;
+  process (is_closing_r, crc_r, place_r, sequence_r, chain_r, varying, bit_r)
+  begin
+    next_bit <= chain_r(0) or bit_of(varying, bit_r);
+    if is_closing_r = '1' then
+      next_bit <= crc_r(0);
+    elsif place_r = sequence_at_c then
+      next_bit <= sequence_r(0);
+    end if;
   end process;
 
   process (clk)
     variable feedback_v : std_logic;
-    variable next_v     : std_logic;
   begin
     if rising_edge(clk) then
       if state_r = idle then
         -- By turns if both are waiting, so that neither starves.
         is_measured_r <= '0';
-        address_r     <= (others => '0');
-        last_r        <= (others => '0');
+        is_closing_r  <= '0';
+        place_r       <= to_unsigned(payload_at_c - 1, 6);
+        bit_r         <= to_unsigned(7, 3);
+        length_r      <= to_unsigned(1, 6);
         if heartbeat_valid = '1' and (is_heartbeat_r = '0' or sample_valid = '0') then
           is_heartbeat_r <= '1';
-          state_r        <= loading;
+          state_r        <= shifting;
         elsif sample_valid = '1' then
           is_heartbeat_r <= '0';
-          state_r        <= loading;
+          state_r        <= shifting;
         end if;
 
-      elsif state_r = loading then
-        byte_r <= bytes(to_integer(is_heartbeat_r & address_r));
-        if is_measured_r = '0' then
-          state_r <= measuring;
-        else
-          state_r <= summing;
+      elsif state_r = shifting then
+        byte_r <= next_bit & byte_r(7 downto 1);
+        bit_r  <= bit_r + 1;
+
+        -- CRC-16/MCRF4XX; at the end it comes out the way it was made.
+        feedback_v := (crc_r(0) xor next_bit) and not is_closing_r;
+        crc_r      <= feedback_v & crc_r(15 downto 1);
+        crc_r(10)  <= crc_r(11) xor feedback_v;
+        crc_r(3)   <= crc_r(4) xor feedback_v;
+        if place_r = magic_at_c then
+          crc_r <= (others => '1');  -- it begins with the byte behind
         end if;
 
-      elsif state_r = measuring then
-        if address_r = end_at_c then
-          is_measured_r <= '1';
+        -- One is added to the sequence number while it goes by.
+        carry_r <= '1';
+        if place_r = sequence_at_c then
+          sequence_r <= (sequence_r(0) xor carry_r) & sequence_r(7 downto 1);
+          carry_r    <= sequence_r(0) and carry_r;
         end if;
-        if unsigned(byte_r) /= 0 and address_r < payload_end_c then
-          last_r <= address_r;
-        end if;
-        address_r <= address_r + 1;
-        state_r   <= loading;
 
-      elsif state_r = summing then
-        -- CRC-16/MCRF4XX, a bit a clock, while the byte goes round; the checksum comes out the
-        -- same way.
-        feedback_v := (crc_r(0) xor byte_r(0)) and not is_closing_r;
-        next_v     := byte_r(0);
-        if is_closing_r = '1' then
-          next_v := crc_r(0);
+        if is_measured_r = '0' and next_bit = '1' and place_r <= payload_end_c then
+          length_r <= place_r;
         end if;
-        byte_r    <= next_v & byte_r(7 downto 1);
-        crc_r     <= '0' & crc_r(15 downto 1);
-        crc_r(15) <= feedback_v;
-        crc_r(10) <= crc_r(11) xor feedback_v;
-        crc_r(3)  <= crc_r(4) xor feedback_v;
-        bit_r     <= bit_r + 1;
         if bit_r = 7 then
-          state_r <= offering;
-          if address_r = extra_at_c then
-            -- Nobody sees this byte; the checksum is next.
+          if is_measured_r = '0' then
+            place_r <= place_r + 1;
+            if place_r = end_at_c then
+              is_measured_r <= '1';
+            end if;
+          elsif place_r = extra_at_c then
+            place_r      <= place_r + 1;
             is_closing_r <= '1';
-            address_r    <= address_r + 1;
-            state_r      <= summing;
+          else
+            state_r <= offering;
           end if;
         end if;
 
       elsif state_r = offering then
         if byte_ready = '1' then
-          address_r <= address_r + 1;
-          state_r   <= loading;
-          if is_closing_r = '1' then
-            state_r <= summing;
-            if address_r = end_at_c then
-              state_r <= finished;
-            end if;
-          elsif address_r = last_r then
-            address_r <= to_unsigned(extra_at_c, 6);
+          place_r <= place_r + 1;
+          state_r <= shifting;
+          if place_r = length_r then
+            place_r <= to_unsigned(extra_at_c, 6);
+          elsif place_r = end_at_c then
+            state_r <= finished;
           end if;
         end if;
 
       else
-        is_closing_r <= '0';
-        sequence_r   <= sequence_r + 1;
-        state_r      <= idle;
-      end if;
-
-      if address_r = magic_at_c then
-        crc_r <= (others => '1');  -- the checksum begins with the byte behind it
+        state_r <= idle;
       end if;
 
       if rst = '1' then
         state_r        <= idle;
         is_heartbeat_r <= '0';
-        is_closing_r   <= '0';
         sequence_r     <= (others => '0');
-        bit_r          <= (others => '0');
       end if;
     end if;
   end process;
