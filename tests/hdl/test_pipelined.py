@@ -26,32 +26,16 @@ from hostkit.errors import EmulationError
 from hostkit.filters.complementary import lower, step_integer
 from hostkit.records import FilterDesign
 from hostkit.render import render_target, write
+from hostkit.render.latency import Latency, filter_latency
 from hostkit.targets import TARGETS
 
 ACCEL, GYRO = count_vectors()
-LATENCY_CYCLES = {
-    ("atan2", "roll"): 43,
-    ("atan2", "pitch"): 70,
-    ("atan2", "both"): 70,
-    ("arcsin", "roll"): 71,
-    ("arcsin", "pitch"): 71,
-    ("arcsin", "both"): 71,
-}
-CHANNEL_CYCLES = 9
 ENOUGH = 12
 """Channels with which no sample meets the one before it."""
 
 
-def latency_cycles(varied: FilterDesign) -> int:
-    return LATENCY_CYCLES[varied.tilt, varied.axes] + (2 if has_integral(varied) else 0)
-
-
-def channel_cycles(varied: FilterDesign) -> int:
-    return CHANNEL_CYCLES + (2 if has_integral(varied) else 0)
-
-
-def has_integral(varied: FilterDesign) -> bool:
-    return lower(varied).integral is not None
+def latency(varied: FilterDesign) -> Latency:
+    return filter_latency(lower(varied), pipelined=True)
 
 
 def expected(core: Core, channel: IntArray, accel: IntArray, gyro: IntArray) -> IntArray:
@@ -105,7 +89,9 @@ three_designs = pytest.mark.parametrize(
 
 
 def test_the_chosen_designs_cover_every_axis_choice_and_method() -> None:
-    assert {(varied.tilt, varied.axes) for varied in CHOSEN} == set(LATENCY_CYCLES)
+    assert {(varied.tilt, varied.axes) for varied in CHOSEN} == {
+        (tilt, axes) for tilt in ("atan2", "arcsin") for axes in ("roll", "pitch", "both")
+    }
 
 
 @each_design
@@ -113,7 +99,7 @@ def test_with_many_channels_there_is_a_result_a_clock(core: Core) -> None:
     channel = round_robin(core.design, ENOUGH)
     run = run_and_compare(core, channel, ENOUGH)
     assert set(np.diff(run.taken_cycle)) == {1}
-    assert set(run.latency_cycles) == {latency_cycles(core.design)}
+    assert set(run.latency_cycles) == {latency(core.design).latency}
 
 
 @three_designs
@@ -121,7 +107,7 @@ def test_samples_of_one_channel_wait_for_each_other(core: Core) -> None:
     channel = np.zeros(250, dtype=np.int64)
     run = run_and_compare(core, channel, 1)
     # The first two go into the two places of the entry at once.
-    assert set(np.diff(run.taken_cycle)[2:]) == {channel_cycles(core.design)}
+    assert set(np.diff(run.taken_cycle)[2:]) == {latency(core.design).channel_interval}
 
 
 @three_designs
