@@ -10,11 +10,12 @@ INTEGRAL_CLOCKS = 1
 HAND_OVER_CLOCKS = 1
 """A result waits one clock for the next sample to be taken."""
 
-PIPELINED_ARCTAN_CLOCKS = {"roll": 39, "pitch": 62, "both": 62}
-PIPELINED_ARCSIN_CLOCKS = 65
+PIPELINED_ARCTAN_CLOCKS = {"roll": 43, "pitch": 70, "both": 70}
+PIPELINED_ARCSIN_CLOCKS = 71
 PIPELINED_INTEGRAL_CLOCKS = 2
-CHANNEL_CLOCKS = 7
-"""In the pipeline, from a sample to the next of the same channel, which needs its result."""
+CHANNEL_CLOCKS = 9
+"""In the pipeline, from a sample to the next of the same channel, which needs its result; without an
+integral."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -133,7 +133,7 @@ def test_the_clocks_of_a_filter() -> None:
     assert filter_latency(lower(all_parameters())).latency == 55
     assert filter_latency(lower(all_parameters(tilt="arcsin"))).latency == 83
     fast = filter_latency(lower(design()), pipelined=True)
-    assert (fast.latency, fast.interval, fast.channel_interval) == (62, 1, 7)
+    assert (fast.latency, fast.interval, fast.channel_interval) == (70, 1, 9)
     assert fast.most_channels(50_000_000, 1000.0) == 50_000
 
 
