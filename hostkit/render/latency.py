@@ -14,8 +14,7 @@ PIPELINED_ARCTAN_CLOCKS = {"roll": 43, "pitch": 70, "both": 70}
 PIPELINED_ARCSIN_CLOCKS = 71
 PIPELINED_INTEGRAL_CLOCKS = 2
 CHANNEL_CLOCKS = 9
-"""In the pipeline, from a sample to the next of the same channel, which needs its result; without an
-integral."""
+"""From a sample to the next of the same channel, which needs its result; without an integral."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
