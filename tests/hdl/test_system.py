@@ -130,7 +130,7 @@ def test_the_monitor_counts_a_spoilt_frame(judged: tuple[Path, int], capsys) -> 
     raw[len(raw) // 2] ^= 0x10
     (folder / "spoilt.tlog").write_bytes(raw)
     _, said = monitored(folder, "design.json", "spoilt.tlog", capsys)
-    assert said["link"]["bad"] >= 1
+    assert said["bad"] >= 1
     assert 50 <= said["samples"] < 60
 
 
