@@ -37,7 +37,8 @@ architecture rtl of hk_polar_pipelined is
   constant chosen_c     : positive := rooted_c + 1;
   constant stretched_c  : positive := chosen_c + stretch_clocks_c;
   constant lengthened_c : positive := chosen_c + length_clocks_c;
-  constant finished_c   : positive := chosen_c + arctan_clocks_c;
+  constant folded_c     : positive := chosen_c + arctan_clocks_c;
+  constant finished_c   : positive := lengthened_c + multiplier_clocks_c + 1;
 
   constant result_bits_c : positive := ID_BITS + 62;
 
@@ -81,8 +82,8 @@ architecture rtl of hk_polar_pipelined is
   signal long          : std_logic_vector(29 downto 0);
   signal late_length   : std_logic_vector(29 downto 0);
   signal magnitude_r   : unsigned(29 downto 0);
-  signal magnitude_2_r : unsigned(29 downto 0);
   signal folded        : signed(31 downto 0);
+  signal late_folded   : std_logic_vector(31 downto 0);
 
   signal result   : std_logic_vector(result_bits_c - 1 downto 0);
   signal out_data : std_logic_vector(result_bits_c - 1 downto 0);
@@ -235,13 +236,24 @@ begin
   shrink : process (clk)
   begin
     if rising_edge(clk) then
-      shrink_r      <= to_signed(shrinks_c(to_integer(unsigned(late_turn))), 18);
-      magnitude_r   <= unsigned(late_length)
-                       - unsigned(shrunk(stretch_fraction_bits_c + 29
-                                         downto stretch_fraction_bits_c));
-      magnitude_2_r <= magnitude_r;
+      shrink_r    <= to_signed(shrinks_c(to_integer(unsigned(late_turn))), 18);
+      magnitude_r <= unsigned(late_length)
+                     - unsigned(shrunk(stretch_fraction_bits_c + 29
+                                       downto stretch_fraction_bits_c));
     end if;
   end process shrink;
+
+  beside_magnitude : entity work.hk_delay
+    generic map (
+      BITS   => 32,
+      CLOCKS => finished_c - folded_c
+    )
+    port map (
+      clk      => clk,
+      rst      => rst,
+      in_data  => std_logic_vector(folded),
+      out_data => late_folded
+    );
 
   beside_all : entity work.hk_delay
     generic map (
@@ -255,7 +267,7 @@ begin
       out_data => late_id
     );
 
-  result <= late_id & std_logic_vector(magnitude_2_r) & std_logic_vector(folded);
+  result <= late_id & std_logic_vector(magnitude_r) & late_folded;
 
   queue : entity work.hk_result_queue
     generic map (

@@ -131,7 +131,7 @@ def _usable_bytes_s(baud: int) -> int:
 
 
 def _require_channels(channels: int, clock_hz: int, rate_hz: float, clocks: Latency) -> None:
-    most = int(clocks.samples_per_s(clock_hz) // rate_hz)
+    most = clocks.most_channels(clock_hz, rate_hz)
     if channels > most:
         raise RenderError(
             f"channels = {channels}; at {clock_hz} Hz, {clocks.interval} clocks a sample and "

@@ -31,7 +31,7 @@ class FpgaReport:
     samples_per_s
         Most that the filter takes at the chosen clock.
     latency_us, interval_us
-        Times of the filter; the latency is empty where it is not stated.
+        Times of the filter.
     most_channels
         Sensors of the design's rate that one filter could serve.
     sample_bytes, heartbeat_bytes, sample_us
@@ -68,9 +68,9 @@ def fpga_report(
         axes=" and ".join(spec.axes),
         method="arc sine" if spec.tilt == "arcsin" else "arc tangent",
         samples_per_s=samples_per_s,
-        latency_us=f"{clocks.latency * us:.3g}" if clocks.latency else "",
+        latency_us=f"{clocks.latency * us:.3g}",
         interval_us=f"{clocks.interval * us:.3g}",
-        most_channels=int(samples_per_s // rate_hz),
+        most_channels=clocks.most_channels(fpga.clock_hz, rate_hz),
         sample_bytes=sample,
         heartbeat_bytes=heartbeat,
         sample_us=f"{BITS_PER_BYTE * 1e6 * sample / fpga.baud:.0f}",

@@ -10,6 +10,12 @@ INTEGRAL_CLOCKS = 1
 HAND_OVER_CLOCKS = 1
 """A result waits one clock for the next sample to be taken."""
 
+PIPELINED_ARCTAN_CLOCKS = {"roll": 43, "pitch": 70, "both": 70}
+PIPELINED_ARCSIN_CLOCKS = 71
+PIPELINED_INTEGRAL_CLOCKS = 2
+CHANNEL_CLOCKS = 9
+"""From a sample to the next of the same channel, which needs its result; without an integral."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Latency:
@@ -18,26 +24,37 @@ class Latency:
     Attributes
     ----------
     latency
-        From the edge that takes a sample to the first edge on which its result is offered; 0 where
-        it is not stated.
+        From the edge that takes a sample to the first edge on which its result is offered; a
+        pipeline that has to wait for the sample before of the same channel takes longer.
     interval
         From one sample to the next at best.
+    channel_interval
+        From one sample to the next of the same channel at best.
     """
 
     latency: int
     interval: int
+    channel_interval: int
 
     def samples_per_s(self, clock_hz: int) -> int:
         """Return how many samples are filtered in a second, at most."""
         return clock_hz // self.interval
 
+    def most_channels(self, clock_hz: int, rate_hz: float) -> int:
+        """Return how many sensors of a rate are filtered, at most."""
+        if rate_hz * self.channel_interval > clock_hz:
+            return 0
+        return int(self.samples_per_s(clock_hz) // rate_hz)
+
 
 def filter_latency(spec: FixedPointSpec, *, pipelined: bool = False) -> Latency:
     """Return the clocks of the filter of a design; they depend on nothing else."""
-    if pipelined:
-        return Latency(latency=0, interval=1)
     axes = "both" if len(spec.axes) > 1 else spec.axes[0]
-    clocks = (ARCSIN_CLOCKS if spec.tilt == "arcsin" else ARCTAN_CLOCKS)[axes]
-    if spec.integral is not None:
-        clocks += INTEGRAL_CLOCKS
-    return Latency(latency=clocks, interval=clocks + HAND_OVER_CLOCKS)
+    arcsin, integral = spec.tilt == "arcsin", spec.integral is not None
+    if pipelined:
+        more = PIPELINED_INTEGRAL_CLOCKS * integral
+        clocks = PIPELINED_ARCSIN_CLOCKS if arcsin else PIPELINED_ARCTAN_CLOCKS[axes]
+        return Latency(latency=clocks + more, interval=1, channel_interval=CHANNEL_CLOCKS + more)
+    clocks = (ARCSIN_CLOCKS if arcsin else ARCTAN_CLOCKS)[axes] + INTEGRAL_CLOCKS * integral
+    interval = clocks + HAND_OVER_CLOCKS
+    return Latency(latency=clocks, interval=interval, channel_interval=interval)

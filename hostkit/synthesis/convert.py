@@ -66,7 +66,7 @@ def convert(
     folder = folder.resolve()
     options = [f"-g{name}={_literal(value)}" for name, value in (generics or {}).items()]
     with tempfile.TemporaryDirectory(prefix="hostkit-convert-") as build:
-        sources = _sources(folder, entity, Path(build))
+        sources = needed_sources(folder, entity)
         command = ["ghdl", "--synth", STANDARD, f"--workdir={build}", "--out=verilog", *options]
         output = run_tool([*command, *sources, "-e", entity], folder, timeout_s=TIMEOUT_S)
     text = output[: output.rindex("endmodule\n") + len("endmodule\n")]
@@ -77,16 +77,24 @@ def convert(
     return Converted(entity=entity, text=mended.text, products=mended.products)
 
 
-def _sources(folder: Path, entity: str, build: Path) -> list[str]:
-    """Return the sources that an entity needs, in the order GHDL finds."""
+def needed_sources(folder: Path, entity: str) -> tuple[str, ...]:
+    """Return the sources of a folder that an entity needs, in the order GHDL finds.
+
+    Raises
+    ------
+    BuildError
+        If there is no source, or GHDL refuses one.
+    """
+    folder = folder.resolve()
     names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.vhd"))
     if not names:
         raise BuildError(f"{folder} holds no VHDL source; generate it for an FPGA target first")
-    work = f"--workdir={build}"
-    run_tool(["ghdl", "-i", STANDARD, work, *names], folder, timeout_s=TIMEOUT_S)
-    order = ["ghdl", "--elab-order", STANDARD, work, entity]
-    found = run_tool(order, folder, timeout_s=TIMEOUT_S).splitlines()
-    return [line for line in found if line in names]
+    with tempfile.TemporaryDirectory(prefix="hostkit-order-") as build:
+        work = f"--workdir={build}"
+        run_tool(["ghdl", "-i", STANDARD, work, *names], folder, timeout_s=TIMEOUT_S)
+        order = ["ghdl", "--elab-order", STANDARD, work, entity]
+        found = run_tool(order, folder, timeout_s=TIMEOUT_S).splitlines()
+    return tuple(line for line in found if line in names)
 
 
 def _literal(value: Generic) -> str:

@@ -84,7 +84,10 @@ module hk_gate_tb;
         sent_at[sent % 256] = clock;
         sent = sent + 1;
       end
-      if (out_valid === 1'b1 && out_ready) begin
+      if (out_valid === 1'b1 && taken == sent) begin
+        $display("error: a result without a sample");
+        $finish;
+      end else if (out_valid === 1'b1 && out_ready) begin
         $fdisplay(results, "%h %h %h %h %h %b %b %0d", out_channel, angle_roll, angle_pitch,
                   bias_roll, bias_pitch, restarted, saturated, clock - sent_at[taken % 256]);
         taken = taken + 1;

@@ -17,6 +17,7 @@ from hostkit.records import FilterDesign
 from hostkit.render import FpgaOptions, render_target, write
 from hostkit.render.fpga_options import Bus
 from hostkit.render.latency import filter_latency
+from hostkit.synthesis import convert
 from hostkit.targets import TARGETS
 
 STANDARD = "--std=93c"
@@ -47,24 +48,27 @@ def analyse_in_order(folder: Path, target: str, bus: Bus, top_name: str) -> None
         ("ecp5", "axi4lite"),
     ],
 )
-def test_ghdl_takes_the_sources_in_the_order_of_the_project(
+def test_ghdl_takes_the_sources_in_the_order_of_the_project_and_converts_them(
     target: str, bus: Bus, tmp_path: Path, ghdl_installed: None
 ) -> None:
     analyse_in_order(tmp_path, target, bus, "tilt_board")
+    assert convert(tmp_path, "hk_system").products > 0
 
 
 @pytest.mark.parametrize(
-    "timed",
-    [all_parameters(), all_parameters(tilt="arcsin"), design(axes="pitch", tilt="arcsin")],
-    ids=["atan2-integral", "arcsin-integral", "arcsin-pitch"],
+    ("timed", "pipelined"),
+    [(all_parameters(), False), (all_parameters(tilt="arcsin"), False), (all_parameters(), True)],
+    ids=["arc-tangent", "arc-sine", "pipelined"],
 )
 def test_the_stated_clocks_are_those_of_the_core(
-    timed: FilterDesign, tmp_path: Path, ghdl_installed: None
+    timed: FilterDesign, pipelined: bool, tmp_path: Path, ghdl_installed: None
 ) -> None:
     core = build_core(timed, tmp_path)
-    counts = np.full((3, 3), 1000, dtype=np.int64)
-    run = ghdl.simulate(core.folder, counts, counts)
-    assert set(run.latency_cycles) == {filter_latency(lower(timed)).latency}
+    counts = np.full((6, 3), 1000, dtype=np.int64)
+    run = ghdl.simulate(core.folder, counts, counts, pipelined=pipelined)
+    stated = filter_latency(lower(timed), pipelined=pipelined)
+    assert min(run.latency_cycles) == stated.latency
+    assert max(np.diff(run.taken_cycle)) == stated.channel_interval
 
 
 def test_the_makefile_leads_to_a_bitstream(tmp_path: Path, ghdl_installed: None) -> None:

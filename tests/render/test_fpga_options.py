@@ -132,7 +132,9 @@ def test_the_clocks_of_a_filter() -> None:
     assert filter_latency(lower(design(tilt="arcsin"))).interval == 83
     assert filter_latency(lower(all_parameters())).latency == 55
     assert filter_latency(lower(all_parameters(tilt="arcsin"))).latency == 83
-    assert filter_latency(lower(design()), pipelined=True).interval == 1
+    fast = filter_latency(lower(design()), pipelined=True)
+    assert (fast.latency, fast.interval, fast.channel_interval) == (70, 1, 9)
+    assert fast.most_channels(50_000_000, 1000.0) == 50_000
 
 
 def test_the_manifest_keeps_options_and_resources(tmp_path: Path) -> None:
