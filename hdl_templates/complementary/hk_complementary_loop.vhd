@@ -24,7 +24,7 @@ entity hk_complementary_loop is
     rate_gain     : in  signed(17 downto 0);
     tilt_offset   : in  signed(31 downto 0);
     gyro_bias     : in  signed(31 downto 0);
-    rate          : in  signed(16 downto 0);  -- three clocks before
+    rate          : in  signed(16 downto 0);  -- product_clocks_c + 1 before
     force_angle   : in  signed(31 downto 0);
     corrects      : in  std_logic;            -- with force_angle, as read_channel
     read_channel  : in  unsigned(CHANNEL_BITS - 1 downto 0);

@@ -12,7 +12,7 @@ package hk_pipelined_pkg is
   function tilt_clocks return positive;
 
   -- The sum of the gate has been compared.
-  constant gate_clocks_c : positive := 6;
+  constant gate_clocks_c : positive := product_clocks_c + 4;
 
   -- What the feedback adds: the result is there, and after how many clocks a sample of the same
   -- channel may follow.

@@ -61,7 +61,7 @@ architecture rtl of hk_arctan_pipelined is
   signal higher_r : std_logic;
 
   signal rest_r  : rests_t(swapped_c to divided_c);
-  signal along_r : alongs_t(swapped_c to divided_c - 1);
+  signal along_r : alongs_t(swapped_c to length_clocks_c - 1);
   signal part_r  : parts_t(swapped_c to counted_c);
   signal more_r  : mores_t(swapped_c to summed_c);
   signal turn_r  : turns_t(swapped_c to scaled_c - 1);
@@ -181,7 +181,8 @@ begin
   carry : process (clk)
   begin
     if rising_edge(clk) then
-      along_r(turned_c + 1 to divided_c - 1) <= along_r(turned_c to divided_c - 2);
+      along_r(turned_c + 1 to length_clocks_c - 1)
+        <= along_r(turned_c to length_clocks_c - 2);
       turn_r(summed_c to scaled_c - 1)       <= turn_r(counted_c to scaled_c - 2);
       steep_r(swapped_c + 1 to scaled_c + 1) <= steep_r(swapped_c to scaled_c);
       behind_r(2 to scaled_c + 1)            <= behind_r(1 to scaled_c);

@@ -37,7 +37,8 @@ architecture rtl of hk_polar_pipelined is
   constant chosen_c     : positive := rooted_c + 1;
   constant stretched_c  : positive := chosen_c + stretch_clocks_c;
   constant lengthened_c : positive := chosen_c + length_clocks_c;
-  constant finished_c   : positive := chosen_c + arctan_clocks_c;
+  constant folded_c     : positive := chosen_c + arctan_clocks_c;
+  constant finished_c   : positive := lengthened_c + multiplier_clocks_c + 1;
 
   constant result_bits_c : positive := ID_BITS + 62;
 
@@ -81,31 +82,11 @@ architecture rtl of hk_polar_pipelined is
   signal long          : std_logic_vector(29 downto 0);
   signal late_length   : std_logic_vector(29 downto 0);
   signal magnitude_r   : unsigned(29 downto 0);
-  signal magnitude_2_r : unsigned(29 downto 0);
   signal folded        : signed(31 downto 0);
+  signal late_folded   : std_logic_vector(31 downto 0);
 
   signal result   : std_logic_vector(result_bits_c - 1 downto 0);
   signal out_data : std_logic_vector(result_bits_c - 1 downto 0);
-
-  -- Size of a component, up to 2**16.
-  function size_of_17 (count : signed(16 downto 0)) return unsigned is
-  begin
-    if count(16) = '1' then
-      return unsigned(-count);
-    end if;
-    return unsigned(count);
-  end function size_of_17;
-
-  -- Size within the arc tangent's limit, or one less in an arc sine, whose squares have 30 bits.
-  function limited_size (size : unsigned(16 downto 0); square : std_logic) return unsigned is
-  begin
-    if square = '1' and (size(16) = '1' or size(15) = '1') then
-      return to_unsigned(polar_limit_c - 1, 16);
-    elsif size(16) = '1' or size(15) = '1' then
-      return to_unsigned(polar_limit_c, 16);
-    end if;
-    return size(15 downto 0);
-  end function limited_size;
 
 begin
 
@@ -125,14 +106,14 @@ begin
   sizes : process (clk)
   begin
     if rising_edge(clk) then
-      x_size_1_r   <= size_of_17(x);
-      y_size_1_r   <= size_of_17(y);
+      x_size_1_r   <= polar_size(x);
+      y_size_1_r   <= polar_size(y);
       x_below_r    <= x(16) & x_below_r(1 to sized_c - 1);
       y_below_r    <= y(16) & y_below_r(1 to sized_c - 1);
       arcsine_r    <= arcsine & arcsine_r(1 to sized_c - 1);
 
-      x_size_2_r <= limited_size(x_size_1_r, arcsine_r(1));
-      y_size_2_r <= limited_size(y_size_1_r, arcsine_r(1));
+      x_size_2_r <= polar_limited(x_size_1_r, arcsine_r(1));
+      y_size_2_r <= polar_limited(y_size_1_r, arcsine_r(1));
 
       x_size_3_r <= x_size_2_r;
       y_size_3_r <= y_size_2_r;
@@ -255,13 +236,24 @@ begin
   shrink : process (clk)
   begin
     if rising_edge(clk) then
-      shrink_r      <= to_signed(shrinks_c(to_integer(unsigned(late_turn))), 18);
-      magnitude_r   <= unsigned(late_length)
-                       - unsigned(shrunk(stretch_fraction_bits_c + 29
-                                         downto stretch_fraction_bits_c));
-      magnitude_2_r <= magnitude_r;
+      shrink_r    <= to_signed(shrinks_c(to_integer(unsigned(late_turn))), 18);
+      magnitude_r <= unsigned(late_length)
+                     - unsigned(shrunk(stretch_fraction_bits_c + 29
+                                       downto stretch_fraction_bits_c));
     end if;
   end process shrink;
+
+  beside_magnitude : entity work.hk_delay
+    generic map (
+      BITS   => 32,
+      CLOCKS => finished_c - folded_c
+    )
+    port map (
+      clk      => clk,
+      rst      => rst,
+      in_data  => std_logic_vector(folded),
+      out_data => late_folded
+    );
 
   beside_all : entity work.hk_delay
     generic map (
@@ -275,7 +267,7 @@ begin
       out_data => late_id
     );
 
-  result <= late_id & std_logic_vector(magnitude_2_r) & std_logic_vector(folded);
+  result <= late_id & std_logic_vector(magnitude_r) & late_folded;
 
   queue : entity work.hk_result_queue
     generic map (

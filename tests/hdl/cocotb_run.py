@@ -18,6 +18,7 @@ def run_bench(
     parameters: Mapping[str, object] | None = None,
     more_sources: Sequence[Path] = (),
     environment: Mapping[str, str] | None = None,
+    ieee_asserts: str = "disable-at-0",
 ) -> int:
     """Run ``benches/BENCH.py`` on an entity of a generated folder.
 
@@ -31,6 +32,9 @@ def run_bench(
         VHDL beside the generated, such as a wrapper with plain ports.
     environment
         What the bench reads from `os.environ`.
+    ieee_asserts
+        Which warnings of unknown values GHDL leaves out; a pipeline computes with them until the
+        first sample comes.
 
     Returns
     -------
@@ -49,7 +53,7 @@ def run_bench(
         hdl_toplevel_lang="vhdl",
         test_module=bench,
         test_args=[STANDARD, "-O2"],
-        plusargs=["--ieee-asserts=disable-at-0"],
+        plusargs=[f"--ieee-asserts={ieee_asserts}"],
         parameters=parameters or {},
         build_dir=build,
         test_dir=build,
