@@ -133,7 +133,7 @@ MUTATIONS = (
         ("learns while restarting", "if restarted_r = '1' then", "if false then"),
     ),
     *_table(
-        "options",
+        "functions",
         "hk_complementary_pkg.vhd",
         ("bias unlimited above", "return bias_limit_c", "return bias"),
         ("bias unlimited below", "return -bias_limit_c", "return bias"),
