@@ -1,6 +1,6 @@
 -- Six counters of 16 bits that stop at their maximum, and one of 32 bits that numbers samples and
--- wraps. They stand in a small memory with one adder, which visits each of them in turn; an event is
--- counted within 16 clocks and must not come again sooner.
+-- wraps. They stand in a small memory with one adder, which visits each of them in turn; an event
+-- is counted within 32 clocks and must not come again sooner.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -8,7 +8,7 @@ use ieee.numeric_std.all;
 entity hk_event_counters is
   port (
     clk          : in  std_logic;
-    rst          : in  std_logic;  -- synchronous, active high; the events of 16 clocks after it wait
+    rst          : in  std_logic;  -- synchronous, active high; clears them in 16 clocks
     events       : in  std_logic_vector(5 downto 0);  -- pulses of one clock
     next_sample  : in  std_logic;  -- a pulse: take the number of a sample
     keep         : in  std_logic;  -- sample_number stays as it is
@@ -19,7 +19,7 @@ entity hk_event_counters is
     count_3      : out unsigned(15 downto 0);
     count_4      : out unsigned(15 downto 0);
     count_5      : out unsigned(15 downto 0);
-    sample_number     : out unsigned(31 downto 0)  -- of the sample that was numbered last, first 0
+    sample_number : out unsigned(31 downto 0)  -- of the sample that was numbered last; from 0
   );
 end entity hk_event_counters;
 

@@ -1,6 +1,6 @@
--- I2C master, one byte or condition a command. A bit has three parts of one length: SCL low with the
--- old SDA, SCL low with the new one, SCL high. Both lines are read back, so a slave may stretch the
--- clock, and a line that is held low is noticed. After an error the lines are let go; the command
+-- I2C master, one byte or condition a command. A bit has three parts of one length: SCL low with
+-- the old SDA, SCL low with the new one, SCL high. Both lines are read back, so a slave may stretch
+-- the clock, and a line that is held low is noticed. After an error the lines are let go; the command
 -- that may follow then is i2c_recover_c.
 library ieee;
 use ieee.std_logic_1164.all;
@@ -98,7 +98,7 @@ architecture rtl of hk_i2c_master is
   signal scl_low_r  : std_logic;
   signal sda_low_r  : std_logic;
   signal command_r  : hk_i2c_command_t;
-  signal byte_r     : std_logic_vector(8 downto 0);  -- to be sent, then received; the last bit is ACK
+  signal byte_r     : std_logic_vector(8 downto 0);  -- to be sent, then received; ACK is last
   signal left_r     : unsigned(3 downto 0);          -- bits, or attempts at a stop, after this one
   signal timer_r    : timer_t;
   signal patience_r : unsigned(patience_bits_c downto 0);  -- phases; the highest bit ends it

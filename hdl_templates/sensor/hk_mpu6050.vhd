@@ -1,7 +1,7 @@
--- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin, and
--- passes on only what is new, whole, and measured with the registers of the design. Works through the
--- program of hk_mpu6050_pkg, then round and round: a sample, the registers that say what a count
--- means, one more register.
+-- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin,
+-- and passes on only what is new, whole, and measured with the registers of the design. Works
+-- through the program of hk_mpu6050_pkg, then round and round: a sample, the registers that say what
+-- a count means, one more register.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -13,7 +13,7 @@ entity hk_mpu6050 is
   generic (
     CLOCK_HZ     : positive;
     BUS_HZ       : positive := 400000;
-    TIME_DIVISOR : positive := 1  -- for simulation: divides the sensor's waits and its sample period
+    TIME_DIVISOR : positive := 1  -- for simulation: of the sensor's waits and sample period
   );
   port (
     clk          : in  std_logic;
@@ -123,7 +123,7 @@ architecture rtl of hk_mpu6050 is
   signal index_r    : unsigned(3 downto 0);  -- of the byte that is read
   signal last_byte  : std_logic;
   signal mismatch_r : std_logic;
-  signal ones_r     : std_logic;  -- the last byte was nothing else: the sensor has let go of the bus
+  signal ones_r     : std_logic;  -- the last byte was nothing else: the sensor let go of the bus
   signal failure_r  : std_logic;  -- of a transfer, which is to be repeated
   signal trouble_r  : trouble_t;
 
