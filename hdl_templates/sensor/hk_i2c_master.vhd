@@ -1,7 +1,7 @@
 -- I2C master, one byte or condition a command. A bit has three parts of one length: SCL low with
 -- the old SDA, SCL low with the new one, SCL high. Both lines are read back, so a slave may stretch
--- the clock, and a line that is held low is noticed. After an error the lines are let go; the command
--- that may follow then is i2c_recover_c.
+-- the clock, and a line that is held low is noticed. After an error the lines are let go; the
+-- command that may follow then is i2c_recover_c.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

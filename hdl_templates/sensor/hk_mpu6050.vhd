@@ -1,7 +1,7 @@
 -- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin,
 -- and passes on only what is new, whole, and measured with the registers of the design. Works
--- through the program of hk_mpu6050_pkg, then round and round: a sample, the registers that say what
--- a count means, one more register.
+-- through the program of hk_mpu6050_pkg, then round and round: a sample, the registers that say
+-- what a count means, one more register.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
