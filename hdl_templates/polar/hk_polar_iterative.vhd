@@ -203,7 +203,7 @@ begin
   no_turn      <= (others => '0');
   no_count     <= (others => '0');
 
-  arctan : entity work.hk_arctan
+  angles : entity work.hk_arctan
     port map (
       clk             => clk,
       rst             => rst,
