@@ -1,5 +1,5 @@
--- Angle and magnitude of a vector, or the arc sine of y / x, one at a time, a digit a clock, with one
--- multiplier.
+-- Angle and magnitude of a vector, or the arc sine of y / x, one at a time, a digit a clock, with
+-- one multiplier.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -203,7 +203,7 @@ begin
   no_turn      <= (others => '0');
   no_count     <= (others => '0');
 
-  arctan : entity work.hk_arctan
+  angles : entity work.hk_arctan
     port map (
       clk             => clk,
       rst             => rst,

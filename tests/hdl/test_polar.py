@@ -8,7 +8,7 @@ from hostkit.render import render_target, write
 from hostkit.targets import TARGETS
 
 PIPELINED_LATENCY = 67
-ITERATIVE_LATENCIES = (31, 61)
+ITERATIVE_LATENCIES = (32, 62)
 
 
 @pytest.mark.usefixtures("ghdl_installed")
