@@ -1,5 +1,5 @@
--- Arc sine of a count over 1 g, a new one every clock: the count is squared, what is left of 1 g has its
--- root taken, and both have an angle.
+-- Arc sine of a count over 1 g, a new one every clock: the count is squared, what is left of 1 g
+-- has its root taken, and both have an angle.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

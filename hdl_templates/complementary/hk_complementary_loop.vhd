@@ -1,6 +1,6 @@
--- The feedback of one axis of the pipelined filter: predict, compare with the measured tilt, correct.
--- Keeps the state of every channel. The clocks at the ports count from where the measured tilt is
--- there; a sample of a channel must not come before the write of the one before it.
+-- The feedback of one axis of the pipelined filter: predict, compare with the measured tilt,
+-- correct. Keeps the state of every channel. The clocks at the ports count from where the measured
+-- tilt is there; a sample of a channel must not come before the write of the one before it.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

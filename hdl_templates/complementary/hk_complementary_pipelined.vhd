@@ -1,6 +1,7 @@
 -- The fast core of the complementary filter: a sample a clock. Nothing stops the pipeline; results
--- wait in a queue, and a sample is taken only if there is room for its result. A sample of a channel
--- waits in front of the pipeline until the feedback has written what the last one of it left.
+-- wait in a queue, and a sample is taken only if there is room for its result. A sample of a
+-- channel waits in front of the pipeline until the feedback has written what the last one of it
+-- left.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

@@ -1,5 +1,5 @@
--- Whether the specific force corrects: the sum of its squared counts lies within two bounds, included.
--- A new answer every clock, gate_clocks_c after the counts.
+-- Whether the specific force corrects: the sum of its squared counts lies within two bounds,
+-- included. A new answer every clock, gate_clocks_c after the counts.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

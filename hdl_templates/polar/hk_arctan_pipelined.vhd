@@ -1,6 +1,6 @@
 -- Arc tangent and length of a vector, a new one every clock; the same integers as hk_arctan. Each
--- digit of its two divisions has a stage. A rest below zero is not put back but added to in the next
--- stage, which gives the same digits. No reset: what comes out belongs to what went in so many
+-- digit of its two divisions has a stage. A rest below zero is not put back but added to in the
+-- next stage, which gives the same digits. No reset: what comes out belongs to what went in so many
 -- clocks before, see hk_polar_pkg.
 library ieee;
 use ieee.std_logic_1164.all;
@@ -26,8 +26,8 @@ end entity hk_arctan_pipelined;
 
 architecture rtl of hk_arctan_pipelined is
 
-  -- Stages: 1 and 2 order the components, then come the digits of the turn, two that turn the larger
-  -- component, and the digits of the ratio.
+  -- Stages: 1 and 2 order the components, then come the digits of the turn, two stages that turn
+  -- the larger component, and the digits of the ratio.
   constant swapped_c : positive := 2;
   constant counted_c : positive := swapped_c + turn_digits_c;
   constant summed_c  : positive := counted_c + 1;

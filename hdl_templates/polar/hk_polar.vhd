@@ -1,5 +1,5 @@
--- Rectangular to polar: the angle and the magnitude of a vector, or the arc sine of y / x. PIPELINED
--- chooses between a new result every clock and a small core that does one at a time.
+-- Rectangular to polar: the angle and the magnitude of a vector, or the arc sine of y / x.
+-- PIPELINED chooses between a new result every clock and a small core that does one at a time.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -15,7 +15,7 @@ entity hk_polar is
     in_valid  : in  std_logic;
     in_ready  : out std_logic;
     in_id     : in  unsigned(ID_BITS - 1 downto 0);
-    arcsine   : in  std_logic;             -- 0: atan2(y, x); 1: arcsin(y / x), x is the count of 1 g
+    arcsine   : in  std_logic;             -- 0: atan2(y, x); 1: arcsin(y / x), x is 1 g
     x         : in  signed(16 downto 0);   -- counts; beyond +-32768 they are taken as that
     y         : in  signed(16 downto 0);
     out_valid : out std_logic;

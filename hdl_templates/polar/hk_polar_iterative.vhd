@@ -1,5 +1,5 @@
--- Angle and magnitude of a vector, or the arc sine of y / x, one at a time, a digit a clock, with one
--- multiplier.
+-- Angle and magnitude of a vector, or the arc sine of y / x, one at a time, a digit a clock, with
+-- one multiplier.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

@@ -1,5 +1,6 @@
--- Angle and magnitude of a vector, or the arc sine of y / x, a new one every clock. Nothing stops the
--- pipeline; results wait in a queue, and a vector is taken only if there is room for its result.
+-- Angle and magnitude of a vector, or the arc sine of y / x, a new one every clock. Nothing stops
+-- the pipeline; results wait in a queue, and a vector is taken only if there is room for its
+-- result.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

@@ -1,5 +1,6 @@
--- Where the results of a pipeline wait that nothing can stop: what has been taken in and not yet been
--- handed over is counted, and `room` falls before there could be more of it than the queue holds.
+-- Where the results of a pipeline wait that nothing can stop: what has been taken in and not yet
+-- been handed over is counted, and `room` falls before there could be more of it than the queue
+-- holds.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
