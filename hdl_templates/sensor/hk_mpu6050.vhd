@@ -1,7 +1,7 @@
--- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin, and
--- passes on only what is new, whole, and measured with the registers of the design. Works through the
--- program of hk_mpu6050_pkg, then round and round: a sample, the registers that say what a count
--- means, one more register.
+-- Driver of the MPU-6050: sets it up, reads a sample in one transfer for each edge of its INT pin,
+-- and passes on only what is new, whole, and measured with the registers of the design. Works
+-- through the program of hk_mpu6050_pkg, then round and round: a sample, the registers that say
+-- what a count means, one more register.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -13,7 +13,7 @@ entity hk_mpu6050 is
   generic (
     CLOCK_HZ     : positive;
     BUS_HZ       : positive := 400000;
-    TIME_DIVISOR : positive := 1  -- for simulation: divides the sensor's waits and its sample period
+    TIME_DIVISOR : positive := 1  -- for simulation: of the sensor's waits and sample period
   );
   port (
     clk          : in  std_logic;
@@ -123,7 +123,7 @@ architecture rtl of hk_mpu6050 is
   signal index_r    : unsigned(3 downto 0);  -- of the byte that is read
   signal last_byte  : std_logic;
   signal mismatch_r : std_logic;
-  signal ones_r     : std_logic;  -- the last byte was nothing else: the sensor has let go of the bus
+  signal ones_r     : std_logic;  -- the last byte was nothing else: the sensor let go of the bus
   signal failure_r  : std_logic;  -- of a transfer, which is to be repeated
   signal trouble_r  : trouble_t;
 
@@ -195,9 +195,10 @@ begin
                 sensor_address_c & '1';
 
   main : process (clk)
-    variable gone_v  : boolean;  -- the next state has a command of the bus
-    variable stamp_v : boolean;  -- this is the time of a sample
-    variable taken_v : boolean;  -- a byte of it
+    variable gone_v    : boolean;  -- the next state has a command of the bus
+    variable stamp_v   : boolean;  -- this is the time of a sample
+    variable taken_v   : boolean;  -- a byte of it
+    variable trouble_v : trouble_t;
   begin
     if rising_edge(clk) then
       failed_transfer_r <= '0';
@@ -339,8 +340,8 @@ begin
           place_r <= more_r;
           part_r  <= one_more;
         else
-          more_r <= more_r + 1;
-          if more_r = sample_step_c - 1 then
+          more_r <= place_r + 1;
+          if place_r = sample_step_c - 1 then
             more_r <= to_unsigned(first_set_c, 5);
           end if;
           state_r <= worry;
@@ -385,15 +386,15 @@ begin
         end if;
 
       elsif state_r = worry then
+        trouble_v := nothing_c;
         if operation = identify_c then
-          trouble_r <= trouble_r + stranger_c;
+          trouble_v := stranger_c;
         elsif failure_r = '1' then
-          trouble_r <= trouble_r + failure_c;
-        else
-          trouble_r <= trouble_r + nothing_c;
+          trouble_v := failure_c;
         end if;
-        gone_v  := true;
-        state_r <= recover;
+        trouble_r <= trouble_r + trouble_v;
+        gone_v    := true;
+        state_r   <= recover;
 
       elsif state_r = recover then
         if reply_valid = '1' then

@@ -1,6 +1,6 @@
 -- A simulated MPU-6050 on an I2C bus; not for synthesis. Registers, sleep, resets that take their
--- time, INT pin and frozen data during a transfer as in hostkit's virtual sensor; counts come from a
--- file. Fails where SCL or SDA break a limit of the fast mode. A fault at 0 never comes.
+-- time, INT pin and frozen data during a transfer as in hostkit's virtual sensor; counts come from
+-- a file. Fails where SCL or SDA break a limit of the fast mode. A fault at 0 never comes.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -11,7 +11,7 @@ use work.hk_mpu6050_pkg.all;
 
 entity hk_mpu6050_model is
   generic (
-    COUNTS_FILE      : string;         -- a sample a line: accel x y z, gyro x y z, temperature, in hex
+    COUNTS_FILE      : string;         -- a line a sample: accel x y z, gyro x y z, temperature; hex
     TIME_DIVISOR     : positive := 1;  -- of resets, waking and the sample period
     SAMPLE_PERIOD_US : natural  := 0;  -- 0: as the registers say, divided
     LEAD_IN          : natural  := settle_samples_c;  -- how often the first line comes again first
