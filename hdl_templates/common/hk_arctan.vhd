@@ -54,7 +54,7 @@ architecture rtl of hk_arctan is
     dividing   -- the digits of the ratio
   );
   signal state_r : state_t;
-  signal count_r : unsigned(3 downto 0);  -- digits made
+  signal count_r : std_logic_vector(0 to ratio_digits_c - 1);  -- digits made: one is 1
 
   signal along_r  : unsigned(30 downto 0);  -- the larger component, then turned
   signal rest_r   : unsigned(31 downto 0);  -- of the smaller component, times two
@@ -92,30 +92,32 @@ begin
   turned <= along_r + (unsigned(product(27 downto 0)) & "00") when state_r = widening
             else along_r + (unsigned(product(30 downto 16)) & "000");
 
-  -- The turn widens the larger component. The first eight digits, squared, correct the length while the others are made. The stretch of
-  -- the second vector comes before the last digit, the slope with it.
-  operands : process (state_r, count_r, digits_r, digits, along_r, part_r, y_second, turn_r, product)
+  -- The turn widens the larger component. The first eight digits, squared, correct the length while
+  -- the others are made. The stretch of the second vector comes before the last digit, and the slope
+  -- with it.
+  operands : process (state_r, count_r, digits_r, digits, along_r, part_r, y_second, turn_r,
+                      product)
   begin
     multiply    <= '0';
     factor      <= signed(shift_left(resize(digits, 23), 16 - ratio_digits_c));
     coefficient <= slope_c;
     if state_r = dividing then
-      if count_r = ratio_digits_c - 1 then
+      if count_r(ratio_digits_c - 1) = '1' then
         multiply <= '1';
-      elsif count_r = ratio_digits_c - 2 then
+      elsif count_r(ratio_digits_c - 2) = '1' then
         factor      <= signed(resize(y_second, 23));
         coefficient <= to_signed(stretches_c(to_integer(turn_r)), 18);
         multiply    <= '1';
-      elsif count_r = 10 then
+      elsif count_r(10) = '1' then
         factor      <= signed(resize(along_r(30 downto 16), 23));
         coefficient <= signed(resize(unsigned(product(15 downto 0)), 18));
         multiply    <= '1';
-      elsif count_r = 8 then
+      elsif count_r(8) = '1' then
         factor      <= signed(resize(digits_r(7 downto 0), 23));
         coefficient <= signed(resize(digits_r(7 downto 0), 18)) + 1;
         multiply    <= '1';
       end if;
-    elsif state_r = turning and count_r = turn_digits_c - 1 then
+    elsif state_r = turning and count_r(turn_digits_c - 1) = '1' then
       factor      <= signed(resize(part_r, 23));
       coefficient <= signed(resize(digits(turn_digits_c - 1 downto 0), 18));
       multiply    <= '1';
@@ -156,20 +158,20 @@ begin
           along_r <= rest_r(30 downto 0);
           rest_r  <= along_r & '0';
         end if;
-        count_r <= (others => '0');
+        count_r <= (0 => '1', others => '0');
         state_r <= turning;
 
       elsif state_r = widening then
         turn_r  <= digits_r(turn_digits_c - 1 downto 0);
-        count_r <= count_r + 1;
-        if count_r = turn_digits_c + 1 then
+        count_r <= '0' & count_r(0 to ratio_digits_c - 2);
+        if count_r(turn_digits_c + 1) = '1' then
           along_r <= turned;
-          count_r <= (others => '0');
+          count_r <= (0 => '1', others => '0');
           state_r <= dividing;
         end if;
 
       else
-        if state_r = turning and count_r = 0 then
+        if state_r = turning and count_r(0) = '1' then
           part_r <= rest_r(30 downto 9);
         end if;
         rest_r <= rest_r(30 downto 0) & '0';
@@ -177,12 +179,12 @@ begin
           rest_r <= trial(30 downto 0) & '0';
         end if;
         digits_r <= digits;
-        count_r  <= count_r + 1;
+        count_r  <= '0' & count_r(0 to ratio_digits_c - 2);
         if state_r = turning then
-          if count_r = turn_digits_c - 1 then
+          if count_r(turn_digits_c - 1) = '1' then
             state_r <= widening;
           end if;
-        elsif count_r = ratio_digits_c - 1 then
+        elsif count_r(ratio_digits_c - 1) = '1' then
           along_r       <= turned;
           ending_r(0)   <= '1';
           quarters_r(0) <= steep_r;
@@ -209,6 +211,7 @@ begin
   -- The product of the slope, then out of the first octant.
   finish : process (clk)
     variable quarters_v : signed(31 downto 0);
+    variable negate_v   : signed(31 downto 0);
   begin
     if rising_edge(clk) then
       ending_r(1 to 3) <= ending_r(0 to 2);
@@ -223,11 +226,8 @@ begin
         base_r                   <= quarters_v - zero;
       end if;
       if ending_r(2) = '1' then
-        if negate_r = '1' then
-          angle <= hk_sum(base_r, not octant_r, '1');
-        else
-          angle <= hk_sum(base_r, octant_r, '0');
-        end if;
+        negate_v := (others => negate_r);
+        angle <= hk_sum(base_r, octant_r xor negate_v, negate_r);
       end if;
       if rst = '1' then
         ending_r(1 to 3) <= (others => '0');

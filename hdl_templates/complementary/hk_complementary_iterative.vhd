@@ -68,7 +68,7 @@ architecture rtl of hk_complementary_iterative is
 
   -- Steps of preparing. A product is there two steps after its operands. The arc tangent of two
   -- components multiplies from step turn_digits_c on, so the last operands come before.
-  signal step_r : unsigned(3 downto 0);
+  signal step_r : std_logic_vector(0 to 9);  -- one of them is 1
   constant square_roll_c  : natural := 0;  -- operands
   constant square_pitch_c : natural := 1;
   constant rate_roll_c    : natural := squares;
@@ -197,7 +197,7 @@ begin
       elsif state_r = idle then
         if in_valid = '1' then
           axis_r       <= first_axis;
-          step_r       <= (others => '0');
+          step_r <= (0 => '1', others => '0');
           channel_r    <= in_channel;
           size_roll_r  <= tilt_size(force_side);
           down_roll_r  <= force_side(16);
@@ -211,11 +211,11 @@ begin
             or at_end_of_range(gyro_x) or at_end_of_range(gyro_y) or at_end_of_range(gyro_z) then
             saturated_r <= '1';
           end if;
-          state_r      <= preparing;
+          state_r <= preparing;
         end if;
 
       elsif state_r = preparing then
-        if step_r = 0 then
+        if step_r(0) = '1' then
           restarted_r <= not stored_started;
           if CHANNELS > 1 then
             angle_now_r  <= stored_angle_now;
@@ -226,66 +226,68 @@ begin
           square_r <= (others => '0');
         end if;
 
-        if uses_arcsin_c and step_r = square_roll_c then
+        if uses_arcsin_c and step_r(square_roll_c) = '1' then
           factor_r      <= signed(resize(size_roll_r, 32));
           coefficient_r <= signed(resize(size_roll_r, 18));
           multiply_r    <= '1';
         end if;
-        if uses_arcsin_c and step_r = square_pitch_c then
+        if uses_arcsin_c and step_r(square_pitch_c) = '1' then
           factor_r      <= signed(resize(size_pitch_r, 32));
           coefficient_r <= signed(resize(size_pitch_r, 18));
           multiply_r    <= '1';
         end if;
-        if step_r = rate_roll_c then
+        if step_r(rate_roll_c) = '1' then
           factor_r      <= resize(rate_roll_r, 32);
           coefficient_r <= settings.rate_gain_roll;
           multiply_r    <= '1';
         end if;
-        if step_r = rate_pitch_c then
+        if step_r(rate_pitch_c) = '1' then
           factor_r      <= resize(rate_pitch_r, 32);
           coefficient_r <= settings.rate_gain_pitch;
           multiply_r    <= '1';
         end if;
-        if uses_gate_c and step_r >= first_force_c and step_r <= last_force_c then
+        if uses_gate_c and (step_r(first_force_c) or step_r(first_force_c + 1)
+                            or step_r(last_force_c)) = '1' then
           factor_r      <= resize(force_r(0), 32);
           coefficient_r <= resize(force_r(0), 18);
           multiply_r    <= '1';
           force_r       <= (force_r(1), force_r(2), force_r(2));
         end if;
-        if uses_gate_c and step_r >= first_force_c + 2 then
+        if uses_gate_c and (step_r(first_force_c + 2) or step_r(first_force_c + 3)
+                            or step_r(last_force_c + 2)) = '1' then
           square_r <= square_r + unsigned(product(31 downto 0));
         end if;
 
-        if step_r = turn_roll_c then
+        if step_r(turn_roll_c) = '1' then
           add_v    := has_roll_c;
           addend_v := shift_floored(product, rate_gain_roll_fraction_bits_c);
           carry_v  := product(rate_gain_roll_fraction_bits_c - 1);
         end if;
-        if step_r = turn_pitch_c then
+        if step_r(turn_pitch_c) = '1' then
           add_v    := has_pitch_c;
           addend_v := shift_floored(product, rate_gain_pitch_fraction_bits_c);
           carry_v  := product(rate_gain_pitch_fraction_bits_c - 1);
         end if;
-        if step_r = bias_roll_c then
+        if step_r(bias_roll_c) = '1' then
           add_v    := has_roll_c;
           addend_v := not settings.gyro_bias_roll;
           carry_v  := '1';
         end if;
-        if step_r = bias_pitch_c then
+        if step_r(bias_pitch_c) = '1' then
           add_v    := has_pitch_c;
           addend_v := not settings.gyro_bias_pitch;
           carry_v  := '1';
         end if;
-        if has_integral_c and step_r >= bias_roll_c then
+        if has_integral_c and (step_r(bias_roll_c) or step_r(bias_pitch_c)) = '1' then
           addend_v := not shift_floored(resize(bias_now_r, 50), bias_fraction_bits_c);
           carry_v  := not bias_now_r(bias_fraction_bits_c - 1);
         end if;
 
-        step_r <= step_r + 1;
-        if step_r = bias_pitch_c and not uses_gate_c then
+        step_r <= '0' & step_r(0 to 8);
+        if step_r(bias_pitch_c) = '1' and not uses_gate_c then
           state_r <= waiting;
         end if;
-        if uses_gate_c and step_r = judge_c then
+        if uses_gate_c and step_r(judge_c) = '1' then
           corrects_r <= '0';
           if square_r >= settings.gate_lowest and square_r <= settings.gate_highest then
             corrects_r <= '1';
@@ -361,7 +363,7 @@ begin
         end if;
       end if;
 
-      if has_integral_c and state_r = preparing and step_r = 0 and stored_started = '0' then
+      if has_integral_c and state_r = preparing and step_r(0) = '1' and stored_started = '0' then
         bias_now_r  <= settings.gyro_bias_roll;
         bias_next_r <= settings.gyro_bias_pitch;
         if not has_roll_c then
@@ -537,7 +539,7 @@ begin
             pitch_next_r <= '1';
           end if;
         end if;
-        if state_r = preparing and step_r = square_pitch_c + 2 and has_both_c then
+        if state_r = preparing and step_r(square_pitch_c + 2) = '1' and has_both_c then
           radicand_r <= rest_of_square(product);
           more_r     <= '1';
         end if;
@@ -552,8 +554,8 @@ begin
     end process root_order;
 
     root_start <= '1' when more_r = '1'
-                  or (state_r = preparing and step_r = square_roll_c + 2 and has_roll_c)
-                  or (state_r = preparing and step_r = square_pitch_c + 2 and not has_roll_c)
+                  or (state_r = preparing and step_r(square_roll_c + 2) = '1' and has_roll_c)
+                  or (state_r = preparing and step_r(square_pitch_c + 2) = '1' and not has_roll_c)
                   else '0';
     radicand   <= radicand_r when more_r = '1' else rest_of_square(product);
 
