@@ -12,7 +12,7 @@ entity hk_event_counters is
     events       : in  std_logic_vector(5 downto 0);  -- pulses of one clock
     next_sample  : in  std_logic;  -- a pulse: take the number of a sample
     keep         : in  std_logic;  -- sample_number stays as it is
-    busy         : out std_logic;  -- events wait to be counted
+    busy         : out std_logic;  -- a number is being taken
     count_0      : out unsigned(15 downto 0);
     count_1      : out unsigned(15 downto 0);
     count_2      : out unsigned(15 downto 0);
@@ -34,6 +34,7 @@ architecture rtl of hk_event_counters is
   signal pending_r : std_logic_vector(7 downto 0);
   signal carry_r   : std_logic;
   signal number    : std_logic;  -- place_r is half of the number
+  signal here      : std_logic_vector(7 downto 0);  -- place_r, one bit for each place
   signal due       : std_logic;
   signal addend    : std_logic;
   signal write     : std_logic;
@@ -42,9 +43,14 @@ architecture rtl of hk_event_counters is
 
 begin
 
-  busy   <= '0' when pending_r = "00000000" and events = "000000" and next_sample = '0' else '1';
+  busy   <= next_sample or pending_r(6) or pending_r(7);
   number <= place_r(2) and place_r(1);
-  due    <= pending_r(to_integer(place_r)) and not clear_r;
+
+  places : for i in 0 to 7 generate
+    here(i) <= '1' when place_r = i else '0';
+  end generate places;
+
+  due    <= '0' when clear_r = '1' or (pending_r and here) = "00000000" else '1';
   addend <= due and (carry_r or not (number and place_r(0)));
   sum    <= ('0' & old_r) + ("0000000000000000" & addend);
   -- A counter that would overflow is not written; the number of a sample wraps.
@@ -71,17 +77,19 @@ begin
       second_r  <= not second_r;
       if second_r = '1' then
         place_r <= place_r + 1;
-        if due = '1' then
-          pending_v(to_integer(place_r)) := '0';
+        if clear_r = '0' then
+          pending_v := pending_v and not here;
         end if;
         if place_r = 7 then
           clear_r <= '0';
         end if;
-        if place_r = 6 then
-          carry_r <= sum(16);
+        -- The second half after the first, whose carry it needs.
+        if here(6) = '1' then
+          carry_r      <= sum(16);
+          pending_v(7) := due;
         end if;
       end if;
-      pending_v := pending_v or (next_sample & next_sample & events);
+      pending_v := pending_v or ('0' & next_sample & events);
       pending_r <= pending_v;
       if rst = '1' then
         second_r  <= '0';

@@ -12,7 +12,7 @@ entity hk_i2c_master is
   generic (
     CLOCK_HZ           : positive;
     BUS_HZ             : positive := 400000;  -- at most; fast-mode minima hold at any clock
-    STRETCH_TIMEOUT_US : positive := 500      -- how long a slave may hold SCL low
+    STRETCH_TIMEOUT_US : positive := 400      -- at least so long a slave may hold SCL low
   );
   port (
     clk              : in  std_logic;
@@ -58,7 +58,7 @@ architecture rtl of hk_i2c_master is
   constant filter_clocks_c : positive := 4;
   constant high_clocks_c   : positive := larger(phase_clocks_c - filter_clocks_c, 1);
   -- What SDA becomes after a start or stop must have come through its filter.
-  constant mark_clocks_c   : positive := phase_clocks_c + filter_clocks_c + 1;
+  constant mark_clocks_c   : positive := larger(phase_clocks_c, filter_clocks_c + 4);
   constant patience_c      : positive :=
     (CLOCK_HZ + 999999) / 1000000 * STRETCH_TIMEOUT_US / phase_clocks_c + 1;
 
@@ -101,7 +101,7 @@ architecture rtl of hk_i2c_master is
   signal byte_r     : std_logic_vector(8 downto 0);  -- to be sent, then received; the last bit is ACK
   signal left_r     : unsigned(3 downto 0);          -- bits, or attempts at a stop, after this one
   signal timer_r    : timer_t;
-  signal patience_r : unsigned(patience_bits_c - 1 downto 0);
+  signal patience_r : unsigned(patience_bits_c downto 0);  -- phases; the highest bit ends it
   signal late_r     : std_logic;
   signal lost_r     : std_logic;
 
@@ -151,7 +151,7 @@ begin
 
       if state_r = idle then
         timer_r    <= phase_c;
-        patience_r <= to_unsigned(patience_c, patience_bits_c);
+        patience_r <= (others => '0');
         command_r  <= command;
         late_r     <= '0';
         lost_r     <= '0';
@@ -194,8 +194,8 @@ begin
           state_r <= high;
         elsif expired_v then
           timer_r    <= phase_c;
-          patience_r <= patience_r - 1;
-          if patience_r = 0 then
+          patience_r <= patience_r + 1;
+          if patience_r(patience_bits_c) = '1' then
             late_r  <= '1';
             state_r <= finished;
           end if;

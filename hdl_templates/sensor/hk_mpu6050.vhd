@@ -195,9 +195,10 @@ begin
                 sensor_address_c & '1';
 
   main : process (clk)
-    variable gone_v  : boolean;  -- the next state has a command of the bus
-    variable stamp_v : boolean;  -- this is the time of a sample
-    variable taken_v : boolean;  -- a byte of it
+    variable gone_v    : boolean;  -- the next state has a command of the bus
+    variable stamp_v   : boolean;  -- this is the time of a sample
+    variable taken_v   : boolean;  -- a byte of it
+    variable trouble_v : trouble_t;
   begin
     if rising_edge(clk) then
       failed_transfer_r <= '0';
@@ -339,8 +340,8 @@ begin
           place_r <= more_r;
           part_r  <= one_more;
         else
-          more_r <= more_r + 1;
-          if more_r = sample_step_c - 1 then
+          more_r <= place_r + 1;
+          if place_r = sample_step_c - 1 then
             more_r <= to_unsigned(first_set_c, 5);
           end if;
           state_r <= worry;
@@ -385,15 +386,15 @@ begin
         end if;
 
       elsif state_r = worry then
+        trouble_v := nothing_c;
         if operation = identify_c then
-          trouble_r <= trouble_r + stranger_c;
+          trouble_v := stranger_c;
         elsif failure_r = '1' then
-          trouble_r <= trouble_r + failure_c;
-        else
-          trouble_r <= trouble_r + nothing_c;
+          trouble_v := failure_c;
         end if;
-        gone_v  := true;
-        state_r <= recover;
+        trouble_r <= trouble_r + trouble_v;
+        gone_v    := true;
+        state_r   <= recover;
 
       elsif state_r = recover then
         if reply_valid = '1' then

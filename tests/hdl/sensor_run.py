@@ -120,3 +120,19 @@ def _read(text: str) -> SensorRun:
         identity=ends[0][9],
         rows_played=ends[0][10],
     )
+
+
+def run_counters(folder: Path, source: Path) -> str:
+    """Run the bench of the counters; return what it complained of."""
+    bench = BENCHES / "hk_event_counters_bench.vhd"
+    for command in (["-a", "-O2", str(source), str(bench)], ["-e", "-O2", bench.stem]):
+        subprocess.run(["ghdl", command[0], STANDARD, *command[1:]], cwd=folder, check=True)
+    done = subprocess.run(
+        ["ghdl", "-r", STANDARD, bench.stem, "--ieee-asserts=disable"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    return done.stdout + done.stderr

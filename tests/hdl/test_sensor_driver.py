@@ -8,9 +8,12 @@ from sensor_run import (
     SensorRun,
     build_sensor,
     in_order_of_the_bench,
+    run_counters,
     sensor_rows,
     simulate,
 )
+
+from hostkit.render.environment import template_root
 
 ROWS = [in_order_of_the_bench(row) for row in sensor_rows()]
 PERIOD_US = 50_000 // 32
@@ -134,6 +137,9 @@ def test_a_register_that_changes_is_noticed(
     check_samples(run, missing=lost)
     assert run.restarts == 1
     assert run.errors == 0
+    if register in (0x19, 0x1B):
+        # These give the counts their meaning: none is passed on until it is set up anew.
+        assert not [s for s in run.samples if 20_000 <= s.time_us < 27_000]
 
 
 def test_an_axis_in_standby_is_noticed_within_a_round_of_the_registers(bench: Path) -> None:
@@ -189,3 +195,12 @@ def test_a_slow_consumer_loses_samples_but_gets_no_other(bench: Path, stall: int
     assert run.lost_samples > 0
     taken_or_lost = len(lines) + run.lost_samples
     assert run.rows_played - 2 <= taken_or_lost <= run.rows_played
+
+
+@pytest.mark.usefixtures("ghdl_installed")
+def test_counters_stop_and_numbers_go_on_beyond_16_bits(tmp_path: Path) -> None:
+    source = template_root("fpga") / "sensor" / "hk_event_counters.vhd"
+    assert run_counters(tmp_path, source) == ""
+    broken = tmp_path / source.name
+    broken.write_text(source.read_text().replace("number or not sum(16)", "'1'"))
+    assert "a counter is wrong" in run_counters(tmp_path, broken)
