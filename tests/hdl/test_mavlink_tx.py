@@ -5,34 +5,37 @@ from cocotb_run import run_bench
 from designs import all_parameters, design
 
 from hostkit.design_file import digest
-from hostkit.records import FilterDesign
 from hostkit.render import render_target, write
+from hostkit.render.fpga_options import FpgaOptions
 from hostkit.targets import TARGETS
 
+GCS, COMPONENT = "1 1 0 0", "42 200 40 8"
+"""System id, component id, type and autopilot."""
 DESIGNS = {
-    "plain": (design(), ""),
-    "integral": (all_parameters(), "roll pitch"),
-    "integral-pitch": (all_parameters("pitch"), "pitch"),
+    "plain": (design(), "", FpgaOptions(), GCS),
+    "integral": (all_parameters(), "roll pitch", FpgaOptions(), GCS),
+    "integral-pitch": (
+        all_parameters("pitch"),
+        "pitch",
+        FpgaOptions(profile="component", system_id=42),
+        COMPONENT,
+    ),
 }
 
 
 @pytest.mark.usefixtures("ghdl_installed")
 @pytest.mark.parametrize("name", DESIGNS)
 def test_frames_are_those_of_pymavlink(tmp_path: Path, name: str) -> None:
-    built, hidden = DESIGNS[name]
-    tests = _run(built, hidden, tmp_path)
-    assert tests == 5
-
-
-def _run(built: FilterDesign, hidden: str, folder: Path) -> int:
-    write(render_target(built, TARGETS["spartan3adsp"]), folder / "core")
-    return run_bench(
-        folder / "core",
+    built, hidden, options, identity = DESIGNS[name]
+    write(render_target(built, TARGETS["spartan3adsp"], options), tmp_path / "core")
+    tests = run_bench(
+        tmp_path / "core",
         "hk_mavlink_tx",
         "mavlink_bench",
-        build=folder / "build",
-        environment={"HIDDEN_AXES": hidden, "DIGEST": digest(built)},
+        build=tmp_path / "build",
+        environment={"HIDDEN_AXES": hidden, "DIGEST": digest(built), "IDENTITY": identity},
     )
+    assert tests == 5
 
 
 LOADS = {
@@ -59,6 +62,7 @@ def test_frames_arrive_at_the_rate_of_the_line(tmp_path: Path, ratio: str) -> No
         more_sources=[Path(__file__).parent / "benches" / "link_loop.vhd"],
         environment={
             "DIGEST": digest(design()),
+            "IDENTITY": GCS,
             "RATIO": str(clock_hz / baud),
             "MOST_CLOCKS": str(FRAME_BYTES * 10 * clock_hz / baud + GAP_CLOCKS),
         },

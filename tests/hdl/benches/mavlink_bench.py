@@ -133,7 +133,7 @@ async def the_sequence_wraps_over_both_kinds(dut) -> None:
         sender.sent.clear()
 
 
-@cocotb.test()
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def neither_kind_starves(dut) -> None:
     sender = Sender(dut, 14)
     await sender.start()

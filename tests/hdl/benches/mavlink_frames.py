@@ -1,5 +1,6 @@
 """Random samples for hk_mavlink_tx, and the frames that pymavlink makes of them."""
 
+import os
 import random
 
 from hostkit.dialect import python_module
@@ -7,6 +8,8 @@ from hostkit.dialect import python_module
 WIDE = ("angle_roll", "angle_pitch", "bias_roll", "bias_pitch")
 COUNTS = ("accel_x", "accel_y", "accel_z", "temperature", "gyro_x", "gyro_y", "gyro_z")
 FLAGS = ("restarted", "saturated", "retuned")
+
+SYSTEM, COMPONENT, VEHICLE_TYPE, AUTOPILOT = map(int, os.environ["IDENTITY"].split())
 
 
 def random_sample(rng: random.Random) -> dict[str, int]:
@@ -43,8 +46,8 @@ def frame_of_sample(
 def frame_of_heartbeat(status: int, number: int) -> bytes:
     module = python_module()
     message = module.MAVLink_heartbeat_message(
-        type=module.MAV_TYPE_GENERIC,
-        autopilot=module.MAV_AUTOPILOT_GENERIC,
+        type=VEHICLE_TYPE,
+        autopilot=AUTOPILOT,
         base_mode=0,
         custom_mode=0,
         system_status=status,
@@ -54,7 +57,7 @@ def frame_of_heartbeat(status: int, number: int) -> bytes:
 
 
 def _packed(message, number: int) -> bytes:
-    sender = python_module().MAVLink(None, srcSystem=1, srcComponent=1)
+    sender = python_module().MAVLink(None, srcSystem=SYSTEM, srcComponent=COMPONENT)
     sender.seq = number
     return bytes(message.pack(sender))
 
