@@ -7,7 +7,7 @@
 --
 -- The multiplier is the caller's. Where `multiply` is 1 it takes the operands into registers on the
 -- next edge, the product is there one edge later and holds until the next multiplication. From a
--- vector taken to its angle nobody else may multiply but in the turn_digits_c + 8 clocks after it.
+-- vector taken to its angle nobody else may multiply but in the turn_digits_c clocks after it.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
@@ -33,8 +33,9 @@ entity hk_arctan is
     angle           : out signed(31 downto 0);    -- half turns, wraps at +-pi; holds until the next
     length          : out unsigned(29 downto 0);  -- times 1 + stretch / 2**stretch_fraction_bits_c,
     stretch         : out signed(17 downto 0);    -- there with the angle, until a vector is taken
+    turn            : out unsigned(turn_digits_c - 1 downto 0);  -- with it
     multiply        : out std_logic;
-    factor          : out signed(16 downto 0);
+    factor          : out signed(22 downto 0);
     coefficient     : out signed(17 downto 0);
     product         : in  signed(49 downto 0)
   );
@@ -49,18 +50,18 @@ architecture rtl of hk_arctan is
     loading,   -- the second vector
     sorting,   -- which component is the larger one
     turning,   -- the digits of the turn
-    widening,  -- turn the larger component
+    widening,  -- turn the larger component: a clock for the product, then the sum
     dividing   -- the digits of the ratio
   );
   signal state_r : state_t;
-  signal count_r : unsigned(3 downto 0);  -- digits made
+  signal count_r : std_logic_vector(0 to ratio_digits_c - 1);  -- digits made: one is 1
 
   signal along_r  : unsigned(30 downto 0);  -- the larger component, then turned
   signal rest_r   : unsigned(31 downto 0);  -- of the smaller component, times two
   signal part_r   : unsigned(21 downto 0);  -- of the smaller component
-  signal more_r   : unsigned(27 downto 0);  -- turn times that part
   signal digits_r : unsigned(ratio_digits_c - 1 downto 0);
   signal turn_r   : unsigned(turn_digits_c - 1 downto 0);
+  signal turned   : unsigned(30 downto 0);  -- the larger component with a product added to it
   signal trial    : unsigned(32 downto 0);  -- rest less the larger component, and its sign
   signal digits   : unsigned(ratio_digits_c - 1 downto 0);
 
@@ -83,33 +84,43 @@ begin
   out_valid <= ending_r(3);
   length    <= along_r(29 downto 0);
   stretch   <= to_signed(stretches_c(to_integer(turn_r)), 18);
+  turn      <= turn_r;
 
   trial  <= ('0' & rest_r) - ("00" & along_r);
   digits <= digits_r(ratio_digits_c - 2 downto 0) & not trial(32);
 
-  -- The first eight digits, squared, correct the length while the others are made. The stretch of
-  -- the second vector comes before the last digit, the slope with it.
-  operands : process (state_r, count_r, digits_r, digits, along_r, y_second, turn_r, product)
+  turned <= along_r + (unsigned(product(27 downto 0)) & "00") when state_r = widening
+            else along_r + (unsigned(product(30 downto 16)) & "000");
+
+  -- The turn widens the larger component. The first eight digits, squared, correct the length while
+  -- the others are made. The stretch of the second vector comes before the last digit, and the slope
+  -- with it.
+  operands : process (state_r, count_r, digits_r, digits, along_r, part_r, y_second, turn_r,
+                      product)
   begin
     multiply    <= '0';
-    factor      <= signed(shift_left(resize(digits, 17), 16 - ratio_digits_c));
+    factor      <= signed(shift_left(resize(digits, 23), 16 - ratio_digits_c));
     coefficient <= slope_c;
     if state_r = dividing then
-      if count_r = ratio_digits_c - 1 then
+      if count_r(ratio_digits_c - 1) = '1' then
         multiply <= '1';
-      elsif count_r = ratio_digits_c - 2 then
-        factor      <= signed(resize(y_second, 17));
+      elsif count_r(ratio_digits_c - 2) = '1' then
+        factor      <= signed(resize(y_second, 23));
         coefficient <= to_signed(stretches_c(to_integer(turn_r)), 18);
         multiply    <= '1';
-      elsif count_r = 10 then
-        factor      <= signed(resize(along_r(30 downto 16), 17));
+      elsif count_r(10) = '1' then
+        factor      <= signed(resize(along_r(30 downto 16), 23));
         coefficient <= signed(resize(unsigned(product(15 downto 0)), 18));
         multiply    <= '1';
-      elsif count_r = 8 then
-        factor      <= signed(resize(digits_r(7 downto 0), 17));
+      elsif count_r(8) = '1' then
+        factor      <= signed(resize(digits_r(7 downto 0), 23));
         coefficient <= signed(resize(digits_r(7 downto 0), 18)) + 1;
         multiply    <= '1';
       end if;
+    elsif state_r = turning and count_r(turn_digits_c - 1) = '1' then
+      factor      <= signed(resize(part_r, 23));
+      coefficient <= signed(resize(digits(turn_digits_c - 1 downto 0), 18));
+      multiply    <= '1';
     end if;
   end process operands;
 
@@ -142,38 +153,39 @@ begin
       elsif state_r = sorting then
         -- So far y stands in along_r and x in rest_r.
         steep_r <= trial(32);
-        part_r  <= rest_r(29 downto 8);
         rest_r  <= rest_r(30 downto 0) & '0';
         if digit_v = '1' then
-          part_r  <= along_r(29 downto 8);
           along_r <= rest_r(30 downto 0);
           rest_r  <= along_r & '0';
         end if;
-        more_r  <= (others => '0');
-        count_r <= (others => '0');
+        count_r <= (0 => '1', others => '0');
         state_r <= turning;
 
       elsif state_r = widening then
-        along_r <= along_r + (more_r & "00");
         turn_r  <= digits_r(turn_digits_c - 1 downto 0);
-        count_r <= (others => '0');
-        state_r <= dividing;
+        count_r <= '0' & count_r(0 to ratio_digits_c - 2);
+        if count_r(turn_digits_c + 1) = '1' then
+          along_r <= turned;
+          count_r <= (0 => '1', others => '0');
+          state_r <= dividing;
+        end if;
 
       else
-        rest_r   <= rest_r(30 downto 0) & '0';
-        more_r   <= more_r(26 downto 0) & '0';
+        if state_r = turning and count_r(0) = '1' then
+          part_r <= rest_r(30 downto 9);
+        end if;
+        rest_r <= rest_r(30 downto 0) & '0';
         if digit_v = '1' then
           rest_r <= trial(30 downto 0) & '0';
-          more_r <= (more_r(26 downto 0) & '0') + part_r;
         end if;
         digits_r <= digits;
-        count_r  <= count_r + 1;
+        count_r  <= '0' & count_r(0 to ratio_digits_c - 2);
         if state_r = turning then
-          if count_r = turn_digits_c - 1 then
+          if count_r(turn_digits_c - 1) = '1' then
             state_r <= widening;
           end if;
-        elsif count_r = ratio_digits_c - 1 then
-          along_r       <= along_r + (unsigned(product(30 downto 16)) & "000");
+        elsif count_r(ratio_digits_c - 1) = '1' then
+          along_r       <= turned;
           ending_r(0)   <= '1';
           quarters_r(0) <= steep_r;
           quarters_r(1) <= (steep_r and below_r) or (behind_r and not steep_r);
@@ -199,6 +211,7 @@ begin
   -- The product of the slope, then out of the first octant.
   finish : process (clk)
     variable quarters_v : signed(31 downto 0);
+    variable negate_v   : signed(31 downto 0);
   begin
     if rising_edge(clk) then
       ending_r(1 to 3) <= ending_r(0 to 2);
@@ -213,11 +226,8 @@ begin
         base_r                   <= quarters_v - zero;
       end if;
       if ending_r(2) = '1' then
-        if negate_r = '1' then
-          angle <= hk_sum(base_r, not octant_r, '1');
-        else
-          angle <= hk_sum(base_r, octant_r, '0');
-        end if;
+        negate_v := (others => negate_r);
+        angle <= hk_sum(base_r, octant_r xor negate_v, negate_r);
       end if;
       if rst = '1' then
         ending_r(1 to 3) <= (others => '0');

@@ -57,18 +57,29 @@ architecture rtl of hk_complementary_iterative is
   );
   signal state_r : state_t;
 
-  -- Steps of preparing. A product is there two steps after its operands.
-  signal step_r : unsigned(3 downto 0);
+  -- With the arc sine the squares of the components come first.
+  function squares return natural is
+  begin
+    if uses_arcsin_c then
+      return 2;
+    end if;
+    return 0;
+  end function squares;
+
+  -- Steps of preparing. A product is there two steps after its operands. The arc tangent of two
+  -- components multiplies from step turn_digits_c on, so the last operands come before.
+  signal step_r : std_logic_vector(0 to 9);  -- one of them is 1
   constant square_roll_c  : natural := 0;  -- operands
   constant square_pitch_c : natural := 1;
-  constant rate_roll_c    : natural := 2;
-  constant rate_pitch_c   : natural := 3;
-  constant first_force_c  : natural := 4;
-  constant turn_roll_c    : natural := 4;  -- sums
-  constant turn_pitch_c   : natural := 5;
-  constant bias_roll_c    : natural := 6;
-  constant bias_pitch_c   : natural := 7;
-  constant judge_c        : natural := 9;  -- the gate
+  constant rate_roll_c    : natural := squares;
+  constant rate_pitch_c   : natural := squares + 1;
+  constant first_force_c  : natural := squares + 2;
+  constant last_force_c   : natural := squares + 4;
+  constant turn_roll_c    : natural := rate_roll_c + 2;  -- sums
+  constant turn_pitch_c   : natural := rate_pitch_c + 2;
+  constant bias_roll_c    : natural := turn_pitch_c + 1;
+  constant bias_pitch_c   : natural := turn_pitch_c + 2;
+  constant judge_c        : natural := last_force_c + 3;  -- the gate
 
   signal axis_r       : axis_t;
   signal channel_r    : unsigned(channel_bits_c - 1 downto 0);
@@ -110,7 +121,7 @@ architecture rtl of hk_complementary_iterative is
   signal tilt         : signed(31 downto 0);
 
   signal arctan_multiply    : std_logic;
-  signal arctan_factor      : signed(16 downto 0);
+  signal arctan_factor      : signed(22 downto 0);
   signal arctan_coefficient : signed(17 downto 0);
 
   -- A stored channel: angles, with an integral the biases, and whether it has had a sample.
@@ -186,7 +197,7 @@ begin
       elsif state_r = idle then
         if in_valid = '1' then
           axis_r       <= first_axis;
-          step_r       <= (others => '0');
+          step_r <= (0 => '1', others => '0');
           channel_r    <= in_channel;
           size_roll_r  <= tilt_size(force_side);
           down_roll_r  <= force_side(16);
@@ -200,11 +211,11 @@ begin
             or at_end_of_range(gyro_x) or at_end_of_range(gyro_y) or at_end_of_range(gyro_z) then
             saturated_r <= '1';
           end if;
-          state_r      <= preparing;
+          state_r <= preparing;
         end if;
 
       elsif state_r = preparing then
-        if step_r = 0 then
+        if step_r(0) = '1' then
           restarted_r <= not stored_started;
           if CHANNELS > 1 then
             angle_now_r  <= stored_angle_now;
@@ -215,66 +226,68 @@ begin
           square_r <= (others => '0');
         end if;
 
-        if uses_arcsin_c and step_r = square_roll_c then
+        if uses_arcsin_c and step_r(square_roll_c) = '1' then
           factor_r      <= signed(resize(size_roll_r, 32));
           coefficient_r <= signed(resize(size_roll_r, 18));
           multiply_r    <= '1';
         end if;
-        if uses_arcsin_c and step_r = square_pitch_c then
+        if uses_arcsin_c and step_r(square_pitch_c) = '1' then
           factor_r      <= signed(resize(size_pitch_r, 32));
           coefficient_r <= signed(resize(size_pitch_r, 18));
           multiply_r    <= '1';
         end if;
-        if step_r = rate_roll_c then
+        if step_r(rate_roll_c) = '1' then
           factor_r      <= resize(rate_roll_r, 32);
           coefficient_r <= settings.rate_gain_roll;
           multiply_r    <= '1';
         end if;
-        if step_r = rate_pitch_c then
+        if step_r(rate_pitch_c) = '1' then
           factor_r      <= resize(rate_pitch_r, 32);
           coefficient_r <= settings.rate_gain_pitch;
           multiply_r    <= '1';
         end if;
-        if uses_gate_c and step_r >= first_force_c then
+        if uses_gate_c and (step_r(first_force_c) or step_r(first_force_c + 1)
+                            or step_r(last_force_c)) = '1' then
           factor_r      <= resize(force_r(0), 32);
           coefficient_r <= resize(force_r(0), 18);
           multiply_r    <= '1';
           force_r       <= (force_r(1), force_r(2), force_r(2));
         end if;
-        if uses_gate_c and step_r >= first_force_c + 2 then
+        if uses_gate_c and (step_r(first_force_c + 2) or step_r(first_force_c + 3)
+                            or step_r(last_force_c + 2)) = '1' then
           square_r <= square_r + unsigned(product(31 downto 0));
         end if;
 
-        if step_r = turn_roll_c then
+        if step_r(turn_roll_c) = '1' then
           add_v    := has_roll_c;
           addend_v := shift_floored(product, rate_gain_roll_fraction_bits_c);
           carry_v  := product(rate_gain_roll_fraction_bits_c - 1);
         end if;
-        if step_r = turn_pitch_c then
+        if step_r(turn_pitch_c) = '1' then
           add_v    := has_pitch_c;
           addend_v := shift_floored(product, rate_gain_pitch_fraction_bits_c);
           carry_v  := product(rate_gain_pitch_fraction_bits_c - 1);
         end if;
-        if step_r = bias_roll_c then
+        if step_r(bias_roll_c) = '1' then
           add_v    := has_roll_c;
           addend_v := not settings.gyro_bias_roll;
           carry_v  := '1';
         end if;
-        if step_r = bias_pitch_c then
+        if step_r(bias_pitch_c) = '1' then
           add_v    := has_pitch_c;
           addend_v := not settings.gyro_bias_pitch;
           carry_v  := '1';
         end if;
-        if has_integral_c and step_r >= bias_roll_c then
+        if has_integral_c and (step_r(bias_roll_c) or step_r(bias_pitch_c)) = '1' then
           addend_v := not shift_floored(resize(bias_now_r, 50), bias_fraction_bits_c);
           carry_v  := not bias_now_r(bias_fraction_bits_c - 1);
         end if;
 
-        step_r <= step_r + 1;
-        if step_r = bias_pitch_c and not uses_gate_c then
+        step_r <= '0' & step_r(0 to 8);
+        if step_r(bias_pitch_c) = '1' and not uses_gate_c then
           state_r <= waiting;
         end if;
-        if uses_gate_c and step_r = judge_c then
+        if uses_gate_c and step_r(judge_c) = '1' then
           corrects_r <= '0';
           if square_r >= settings.gate_lowest and square_r <= settings.gate_highest then
             corrects_r <= '1';
@@ -350,7 +363,7 @@ begin
         end if;
       end if;
 
-      if has_integral_c and state_r = preparing and step_r = 0 and stored_started = '0' then
+      if has_integral_c and state_r = preparing and step_r(0) = '1' and stored_started = '0' then
         bias_now_r  <= settings.gyro_bias_roll;
         bias_next_r <= settings.gyro_bias_pitch;
         if not has_roll_c then
@@ -406,10 +419,12 @@ begin
     signal word_r   : std_logic_vector(word_bits_c - 1 downto 0);
     signal word     : std_logic_vector(word_bits_c - 1 downto 0);
     signal address  : unsigned(channel_bits_c - 1 downto 0);
+    signal read     : std_logic;
     signal write    : std_logic;
   begin
 
     address <= in_channel when state_r = idle else channel_r;
+    read    <= in_valid when state_r = idle else '0';
     write   <= '1' when state_r = finished or state_r = clearing else '0';
 
     memory : process (clk)
@@ -418,7 +433,9 @@ begin
         if write = '1' then
           memory_r(to_integer(address)) <= word;
         end if;
-        word_r <= memory_r(to_integer(address));
+        if read = '1' then
+          word_r <= memory_r(to_integer(address));
+        end if;
       end if;
     end process memory;
 
@@ -522,7 +539,7 @@ begin
             pitch_next_r <= '1';
           end if;
         end if;
-        if state_r = preparing and step_r = square_pitch_c + 2 and has_both_c then
+        if state_r = preparing and step_r(square_pitch_c + 2) = '1' and has_both_c then
           radicand_r <= rest_of_square(product);
           more_r     <= '1';
         end if;
@@ -537,8 +554,8 @@ begin
     end process root_order;
 
     root_start <= '1' when more_r = '1'
-                  or (state_r = preparing and step_r = square_roll_c + 2 and has_roll_c)
-                  or (state_r = preparing and step_r = square_pitch_c + 2 and not has_roll_c)
+                  or (state_r = preparing and step_r(square_roll_c + 2) = '1' and has_roll_c)
+                  or (state_r = preparing and step_r(square_pitch_c + 2) = '1' and not has_roll_c)
                   else '0';
     radicand   <= radicand_r when more_r = '1' else rest_of_square(product);
 

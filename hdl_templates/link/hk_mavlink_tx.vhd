@@ -122,7 +122,7 @@ architecture rtl of hk_mavlink_tx is
   -- in says, and all of those are fill.
   signal chain_r : std_logic_vector(half_c - 1 downto 0);
   signal fill_r  : std_logic;
-  signal load    : std_logic;
+  signal load_r  : std_logic;
 
   type state_t is (idle, shifting, offering, finished);
   signal state_r : state_t;
@@ -192,18 +192,22 @@ begin
     flags(flag_retuned_c)   <= retuned;
   end process;
 
-  -- One half is loaded in front of the payload, the other with the last bit of the first.
-  load <= '1' when
-    (place_r = payload_at_c - 1 and bit_r = 7) or
-    (place_r = payload_at_c + (half_c - 1) / 8 and bit_r = (half_c - 1) mod 8) else '0';
-
   process (clk)
   begin
     if rising_edge(clk) then
+      -- One half is loaded in front of the payload, the other with the last bit of the first; this
+      -- is known a bit before, which is of the same byte because half_c is a multiple of four.
+      load_r <= '0';
+      if state_r = shifting and (
+        (place_r = payload_at_c - 1 and bit_r = 6) or
+        (place_r = payload_at_c + (half_c - 1) / 8 and bit_r = (half_c - 1) mod 8 - 1)
+      ) then
+        load_r <= '1';
+      end if;
       if state_r = shifting then
         for i in 0 to half_c - 2 loop
           chain_r(i) <= chain_r(i + 1);
-          if load = '1' then
+          if load_r = '1' then
             if chain_r(i + 1) = '0' then
               chain_r(i) <= payload(i);
             else
@@ -212,7 +216,7 @@ begin
           end if;
         end loop;
         chain_r(half_c - 1) <= fill_r;
-        if load = '1' then
+        if load_r = '1' then
           fill_r <= not fill_r;
           if fill_r = '0' then
             chain_r(half_c - 1) <= payload(half_c - 1);
@@ -257,7 +261,7 @@ begin
         is_measured_r <= '0';
         is_closing_r  <= '0';
         place_r       <= to_unsigned(payload_at_c - 1, 6);
-        bit_r         <= to_unsigned(7, 3);
+        bit_r         <= to_unsigned(6, 3);
         length_r      <= to_unsigned(1, 6);
         if heartbeat_valid = '1' and (is_heartbeat_r = '0' or sample_valid = '0') then
           is_heartbeat_r <= '1';

@@ -7,8 +7,9 @@ import click
 from hostkit.cli.inputs import JSON
 from hostkit.cli.output import emit_json
 from hostkit.emulation.board import BuildResult
+from hostkit.emulation.ghdl import analyse
 from hostkit.emulation.run import build as run_build
-from hostkit.render import target_of
+from hostkit.render import FpgaOptions, read_manifest, target_of
 
 
 @click.command("build")
@@ -25,7 +26,7 @@ def build(folder: Path, as_json: bool) -> None:
       hostkit build firmware
     """
     target = target_of(folder)
-    result = run_build(folder, target)
+    result = _analysed(folder) if target.kind == "fpga" else run_build(folder, target)
     if as_json:
         emit_json({"schema": "hostkit.build/1", "target": target.name, **_document(result)})
     elif isinstance(result, BuildResult):
@@ -35,6 +36,13 @@ def build(folder: Path, as_json: bool) -> None:
         click.echo(f"{target.name}: {result.artifact}{sizes}")
     else:
         click.echo(f"{target.name}: analysed {', '.join(result)}")
+
+
+def _analysed(folder: Path) -> tuple[str, ...]:
+    """Analyse the filter with its bench and, in folders that have one, the top of the board."""
+    options = read_manifest(folder).options
+    top = options.top_name if isinstance(options, FpgaOptions) else ""
+    return analyse(folder, top=top if (folder / f"{top}.vhd").is_file() else None)
 
 
 def _document(result: BuildResult | tuple[str, ...]) -> dict[str, object]:

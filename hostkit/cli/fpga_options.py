@@ -26,12 +26,25 @@ FPGA_OPTIONS = (
         is_flag=True,
         help="FPGA: a filter that takes a sample every clock, instead of a small one.",
     ),
+    _option(
+        "--oscillator-hz",
+        type=int,
+        metavar="N",
+        help="FPGA: clock that the board gives, Hz; that of the target's first board by default.",
+    ),
     _option("--clock-hz", type=int, metavar="N", help="FPGA: clock of the system, Hz."),
     _option(
         "--top-name",
         metavar="NAME",
         help=f"FPGA: entity of the top; {TOP_NAME} by default.",
     ),
+)
+
+SYNTHESISE = click.option(
+    "--synthesise",
+    is_flag=True,
+    help="FPGA: synthesise with GHDL and Yosys, and put the resources into the README; takes "
+    "minutes.",
 )
 
 

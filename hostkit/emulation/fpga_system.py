@@ -11,6 +11,8 @@ from hostkit.emulation.comparison import EmulationResult, compare, compare_with_
 from hostkit.emulation.fault import Fault
 from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
+from hostkit.emulation.system_faults import Generics, fault_generics
+from hostkit.errors import EmulationError
 from hostkit.link.decoder import Decoder
 from hostkit.link.tlog import TlogWriter
 from hostkit.recordings import Recording
@@ -22,30 +24,19 @@ from hostkit.targets import Target
 
 IntArray = NDArray[np.int64]
 
-SHORTEST_PERIOD_US = 800
-"""A burst of the sensor takes 0.4 ms, and a frame of a sample 0.7 ms at the bench's rate."""
+SHORTEST_US = 1250
+"""Reading and checking the sensor takes 1.2 ms at most with the slow clock of the bench."""
 US_PER_S = 1e6
-FAULT_GENERICS = {
-    "nack-address": ("NACK_AT", "NACKS"),
-}
-"""Generics of the bench for a fault's time or place, and for its amount."""
 
 
 def timing_of(design: FilterDesign) -> SystemTiming:
-    """Return a timing in which a sample of a design takes few clocks.
-
-    The waits of the driver are measured in samples as well as in time, so both are shortened alike.
-    """
-    period_us = round(US_PER_S * design.period_s)
-    divisor = max(1, period_us // SHORTEST_PERIOD_US)
-    return SystemTiming(time_divisor=divisor, period_us=period_us // divisor)
+    """Return a timing in which a sample of a design takes few clocks."""
+    fitting = max(1, round(US_PER_S * design.period_s) // SHORTEST_US)
+    return SystemTiming(time_divisor=2 ** (fitting.bit_length() - 1))
 
 
 def table_of(design: FilterDesign, recording: Recording, samples: int) -> tuple[Counts, IntArray]:
-    """Return the counts of the first rows of a recording, and the table that the model plays.
-
-    The first row stands there once more for every sample that the driver drops.
-    """
+    """Return the counts of the first rows of a recording, and with their temperature as a table."""
     stimulus = stimulus_of(design, recording)
     counts = to_counts(
         SENSORS[design.sensor.part],
@@ -55,8 +46,8 @@ def table_of(design: FilterDesign, recording: Recording, samples: int) -> tuple[
     )
     above = stimulus.temperature_deg_c[:samples] - TEMPERATURE_OFFSET_DEG_C
     temperature = np.clip(np.rint(above * TEMPERATURE_COUNTS_PER_DEG_C), -(2**15), 2**15 - 1)
-    rows = np.column_stack([counts.accel, temperature.astype(np.int64), counts.gyro])
-    return counts, np.vstack([np.repeat(rows[:1], stimulus.settle_samples, axis=0), rows])
+    rows = np.column_stack([counts.accel, counts.gyro, temperature.astype(np.int64)])
+    return counts, rows
 
 
 def emulate_system(
@@ -89,18 +80,27 @@ def emulate_system(
     """
     timing = timing_of(design)
     counts, table = table_of(design, recording, samples)
-    run = run_system(folder, table, timing, generics_of(faults, design, len(table) - len(counts)))
+    generics: Generics = ()
+    if faults:
+        generics = fault_generics(faults, design, timing, _first_us(folder, table, timing))
+    run = run_system(folder, table, timing, generics)
     if record is not None:
         write_tlog(run, record)
     board = BoardRun(stream=run.stream)
     if not faults:
         return compare(target, design, counts, answer_of(board, target, design))
     frames, trace = heard_of(board, target, design)
-    slower = design.period_s * US_PER_S / timing.period_us
-    time_us = np.rint(trace.time_us * slower).astype(np.int64)
-    return compare_with_faults(
-        target, design, counts, board, (frames, replace(trace, time_us=time_us)), faults, None
-    )
+    heard = frames, replace(trace, time_us=trace.time_us * timing.time_divisor)
+    return compare_with_faults(target, design, counts, board, heard, faults, None)
+
+
+def _first_us(folder: Path, table: IntArray, timing: SystemTiming) -> int:
+    """Return when the first row is sampled if nothing goes wrong."""
+    frames = Decoder().feed(run_system(folder, table[:3], timing).stream)
+    times = [frame.message.time_usec for frame in frames if frame.name == "TILT_SAMPLE"]
+    if not times:
+        raise EmulationError("the simulated system sent no sample")
+    return int(times[0])
 
 
 def write_tlog(run: SystemRun, path: Path) -> None:
@@ -116,10 +116,3 @@ def write_tlog(run: SystemRun, path: Path) -> None:
         for frame in decoder.feed(bytes([byte])):
             writer.write(time_us, frame.raw)
     writer.close()
-
-
-def generics_of(
-    faults: tuple[Fault, ...], design: FilterDesign, settle: int
-) -> tuple[tuple[str, str], ...]:
-    """Return faults as generics of the bench."""
-    raise NotImplementedError

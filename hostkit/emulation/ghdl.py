@@ -38,7 +38,7 @@ _UNIT = re.compile(r"^(?:entity|package) (\w+)$", re.MULTILINE)
 __all__ = ["COLUMN", "HdlRun", "HdlSettings", "analyse", "hdl_settings", "simulate"]
 
 
-def analyse(folder: Path) -> tuple[str, ...]:
+def analyse(folder: Path, *, top: str | None = None) -> tuple[str, ...]:
     """Analyse the VHDL sources of a generated folder and elaborate their bench.
 
     GHDL itself finds the order in which the sources need each other. What it makes goes to
@@ -48,6 +48,8 @@ def analyse(folder: Path) -> tuple[str, ...]:
     ----------
     folder
         Folder that `hostkit generate` wrote for an FPGA target.
+    top
+        Entity that is analysed and elaborated, too: that of the board, with all it needs.
 
     Returns
     -------
@@ -73,9 +75,12 @@ def analyse(folder: Path) -> tuple[str, ...]:
     names = [source.relative_to(folder).as_posix() for source in sources]
     library_option = f"--workdir={BUILD}"
     _ghdl(folder, "-i", STANDARD, library_option, *names)
-    order = _ghdl(folder, "--elab-order", STANDARD, library_option, BENCH).splitlines()
+    tops = (BENCH,) if top is None else (BENCH, top)
+    orders = [_ghdl(folder, "--elab-order", STANDARD, library_option, unit) for unit in tops]
+    order = dict.fromkeys(line for text in orders for line in text.splitlines())
     _ghdl(folder, "-a", STANDARD, OPTIMISE, library_option, *order)
-    _ghdl(build, "-e", STANDARD, OPTIMISE, BENCH)
+    for unit in tops:
+        _ghdl(build, "-e", STANDARD, OPTIMISE, unit)
     return tuple(sorted(_UNIT.findall(_ghdl(folder, "--dir", STANDARD, library_option))))
 
 
@@ -86,6 +91,7 @@ def simulate(
     *,
     channel: IntArray | None = None,
     channels: int | None = None,
+    pipelined: bool | None = None,
     settings: Mapping[int, HdlSettings] | None = None,
     random_stalls: bool = False,
     abandon_clocks: int = 0,
@@ -103,6 +109,8 @@ def simulate(
         Channel of each sample, shape ``(N,)``; without it all are of channel 0.
     channels
         How many the core has; without it what it was generated for.
+    pipelined
+        Which core; without it the one that was generated for.
     settings
         Settings by the index of the first sample that they hold for; before the first of them the
         core has the design's.
@@ -147,7 +155,9 @@ def simulate(
                 f"-gABANDON_CLOCKS={abandon_clocks}",
             ),
             *([] if channels is None else [f"-gCHANNELS={channels}"]),
-            "--ieee-asserts=disable-at-0",
+            *([] if pipelined is None else [f"-gPIPELINED={str(pipelined).lower()}"]),
+            # A pipeline computes with whatever stands at its inputs, unknown values included.
+            f"--ieee-asserts={'disable' if pipelined else 'disable-at-0'}",
             "--assert-level=warning",
         ]
         limit_s = RUN_TIMEOUT_S + SAMPLE_TIMEOUT_S * samples

@@ -1,6 +1,5 @@
 """The bench of a whole FPGA system in GHDL: from a table of counts to the bytes of its link."""
 
-import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -22,6 +21,9 @@ BUILD = "build-system"
 
 BUILD_TIMEOUT_S = 300.0
 RUN_TIMEOUT_S = 120.0
+LIMIT_US = 800_000
+LIMIT_ROW_US = 4000
+"""The bench ends after so long, the first divided, even if the sensor was never read."""
 SAMPLE_TIMEOUT_S = 2.0
 """Added to the run's limit for every sample; GHDL takes about a twentieth of it."""
 
@@ -35,15 +37,13 @@ class SystemTiming:
     clock_hz, baud
         Its clock and its link; a slow clock and a fast link make few clocks of a sample.
     time_divisor
-        So much shorter are the waits of the sensor's driver and the time between heartbeats.
-    period_us
-        Time between two samples of the sensor.
+        So much shorter are the waits of the sensor and of its driver, the time between two samples
+        and that between two heartbeats.
     """
 
     clock_hz: int = 4_000_000
     baud: int = 1_000_000
     time_divisor: int = 1
-    period_us: int = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +83,7 @@ def build_system(folder: Path) -> None:
         raise BuildError(f"{folder} holds no {BENCH}.vhd; generate it for an FPGA target first")
     build = folder / BUILD
     build.mkdir(exist_ok=True)
-    _ghdl(build, "-i", STANDARD, *(os.path.join("..", name) for name in sources))
+    _ghdl(build, "-i", STANDARD, *(f"../{name}" for name in sources))
     _ghdl(build, "-m", STANDARD, OPTIMISE, BENCH)
 
 
@@ -100,7 +100,7 @@ def run_system(
     folder
         Folder on which :func:`build_system` has been called.
     table
-        Counts in the order of the sensor's registers, shape ``(N, 7)``.
+        Counts: specific force, angular rate, temperature, shape ``(N, 7)``.
     generics
         Further generics of the bench and their values.
 
@@ -126,7 +126,8 @@ def run_system(
             "CLOCK_HZ": timing.clock_hz,
             "BAUD": timing.baud,
             "TIME_DIVISOR": timing.time_divisor,
-            "PERIOD_US": timing.period_us,
+            "ROWS": len(table),
+            "LIMIT_US": LIMIT_US // timing.time_divisor + LIMIT_ROW_US * len(table),
         } | dict(generics)
         _run(build, [f"-g{key}={value}" for key, value in wanted.items()], len(table))
         return _parsed(heard)

@@ -27,13 +27,14 @@ class ArctanContext:
 def arctan_context(table: ArctanTable) -> ArctanContext:
     """Lay out the tables of the arc tangent."""
     return ArctanContext(
-        angle_rows=_rows(table.angles_raw),
-        stretch_rows=_rows(table.stretches_raw),
+        angle_rows=table_rows(table.angles_raw),
+        stretch_rows=table_rows(table.stretches_raw),
         turns=len(table.angles_raw),
     )
 
 
-def _rows(values: tuple[int, ...]) -> tuple[str, ...]:
+def table_rows(values: tuple[int, ...]) -> tuple[str, ...]:
+    """Return the numbers of a table as rows, commas between them."""
     return tuple(
         ", ".join(map(str, values[i : i + PER_ROW])) for i in range(0, len(values), PER_ROW)
     )

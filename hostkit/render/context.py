@@ -16,11 +16,14 @@ from hostkit.render.filter_context import FilterContext, filter_context
 from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
+from hostkit.render.fpga_report import CellCounts, FpgaReport, fpga_report
 from hostkit.render.link_plan import LinkPlan, link_plan
 from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.polar_context import PolarContext, polar_context
 from hostkit.render.registers import RegistersContext, register_map, registers_context
 from hostkit.render.run_time_context import RunTimeContext, run_time_context
+from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
 from hostkit.sensors.part import COUNTS_PER_FULL_SCALE, Identity, Range, Register, RegisterWrite
@@ -151,6 +154,7 @@ class RenderContext:
     real: FloatContext
     run_time: RunTimeContext
     arctan: ArctanContext
+    polar: PolarContext
     root_fraction_bits: int
     stretch_fraction_bits: int
     mounting: tuple[MountingContext, ...]
@@ -158,9 +162,11 @@ class RenderContext:
     has_pitch: bool
     uses_arcsin: bool
     sensor: SensorContext
+    sensor_program: SensorProgram
     link: LinkPlan
     options: FirmwareOptions
-    fpga: FpgaContext
+    fpga: FpgaContext | None
+    report: FpgaReport | None
     mavlink: MavlinkContext
     registers: RegistersContext
     target: Target
@@ -174,9 +180,18 @@ class RenderContext:
 
 
 def render_context(
-    design: FilterDesign, target: Target, options: Options | None = None
+    design: FilterDesign,
+    target: Target,
+    options: Options | None = None,
+    *,
+    cells: tuple[CellCounts, ...] = (),
 ) -> RenderContext:
     """Lower a design and lay out what templates need.
+
+    Parameters
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
 
     Raises
     ------
@@ -184,13 +199,15 @@ def render_context(
         If the design cannot be lowered, or does not fit the target's sensor rate or link, or
         there are options for a target of another kind.
     """
-    if target.kind == "fpga":
-        fpga_options = fpga_options_of(target, options)
-        firmware = link_options(fpga_options)
-    else:
-        fpga_options = DEFAULT_FPGA_OPTIONS
-        firmware = firmware_options_of(target, options)
     spec = FILTERS[design.filter].lower(design)
+    chosen, fpga = DEFAULT_FPGA_OPTIONS, None
+    if target.kind == "fpga":
+        chosen = fpga_options_of(target, options)
+        fpga = fpga_context(chosen, target, spec, design.rate_hz)
+        firmware = link_options(chosen, fpga)
+    else:
+        firmware = firmware_options_of(target, options)
+    sensor = _sensor_context(design)
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -198,20 +215,27 @@ def render_context(
         real=float_context(design, spec),
         run_time=run_time_context(design, spec),
         arctan=arctan_context(spec.arctan),
+        polar=polar_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
         stretch_fraction_bits=STRETCH_FRACTION_BITS,
         mounting=_mounting_context(design.mounting),
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
         uses_arcsin=spec.tilt == "arcsin",
-        sensor=_sensor_context(design),
+        sensor=sensor,
+        sensor_program=sensor_program(
+            sensor.configuration,
+            sensor.variant_configuration,
+            period_us=round(1e6 * design.period_s),
+        ),
         link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
-        fpga=fpga_context(fpga_options, target),
+        fpga=fpga,
+        report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
         mavlink=mavlink_context(
             firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
         ),
-        registers=registers_context(register_map(design, spec, fpga_options)),
+        registers=registers_context(register_map(design, spec, chosen)),
         target=target,
     )
 

@@ -1,10 +1,10 @@
 """What one may choose of an FPGA beside its design: bus, clock, channels, names."""
 
-import re
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
 from hostkit.errors import RenderError
+from hostkit.identifiers import require_identifier
 from hostkit.render.options import (
     BAUD_LIMITS,
     IDENTITIES,
@@ -18,7 +18,6 @@ Bus = Literal["none", "axi4lite", "wishbone"]
 
 CHANNEL_LIMITS: Final = (1, 1024)
 TOP_NAME: Final = "hk_top"
-_IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +34,8 @@ class FpgaOptions:
         Whether the filter takes a sample every clock, or is small and takes one at a time.
     clock_hz
         Clock of the system, Hz; None is the target's own.
+    oscillator_hz
+        Clock that the board gives, Hz; None is that of the target's first board.
     baud
         Rate of the telemetry link, bit/s; None is the target's own, or the slowest standard rate
         that carries the samples of the design.
@@ -53,6 +54,7 @@ class FpgaOptions:
     channels: int = 1
     pipelined: bool = False
     clock_hz: int | None = None
+    oscillator_hz: int | None = None
     baud: int | None = None
     profile: Profile = "gcs"
     system_id: int = 1
@@ -66,25 +68,19 @@ class FpgaOptions:
         low, high = CHANNEL_LIMITS
         if not low <= self.channels <= high:
             raise RenderError(f"channels = {self.channels}; it must be {low} to {high}")
-        if self.clock_hz is not None and self.clock_hz <= 0:
-            raise RenderError(f"clock_hz = {self.clock_hz}; it must be above 0")
+        for name in ("clock_hz", "oscillator_hz"):
+            clock_hz = getattr(self, name)
+            if clock_hz is not None and clock_hz <= 0:
+                raise RenderError(f"{name} = {clock_hz}; it must be above 0")
         low, high = BAUD_LIMITS
         if self.baud is not None and not low <= self.baud <= high:
             raise RenderError(f"baud = {self.baud}; it must be {low} to {high} bit/s")
-        _require_name(self.top_name)
+        require_identifier("top_name", self.top_name)
 
     @property
     def identity(self) -> Identity:
         """Who the device says it is."""
         return IDENTITIES[self.profile]
-
-
-def _require_name(name: str) -> None:
-    if not _IDENTIFIER.fullmatch(name):
-        raise RenderError(
-            f"top_name = {name!r} is no identifier of VHDL: letters, digits and single "
-            f"underscores, a letter first, no underscore last; {TOP_NAME} would do"
-        )
 
 
 DEFAULT_FPGA_OPTIONS: Final = FpgaOptions()

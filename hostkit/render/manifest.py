@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -12,6 +12,7 @@ from hostkit.errors import RenderError
 from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.choices import Options, default_options, fpga_options_of
 from hostkit.render.fpga_options import FpgaOptions
+from hostkit.render.fpga_report import CellCounts
 from hostkit.render.options import DEFAULT_OPTIONS, FirmwareOptions, MessageRate
 from hostkit.targets import TARGETS, Target
 
@@ -21,21 +22,32 @@ MANIFEST_SCHEMA = "hostkit.manifest/1"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Manifest:
-    """What a folder says of itself: target, design digest, options, and the hash of every file."""
+    """What a folder says of itself: target, design digest, options, and the hash of every file.
+
+    Attributes
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
+    """
 
     target: str
     digest: str
     files: tuple[tuple[str, str], ...]
     options: Options = DEFAULT_OPTIONS
+    cells: tuple[CellCounts, ...] = ()
 
 
 def manifest_text(
-    design: FilterDesign, target: Target, options: Options, files: list[GeneratedFile]
+    design: FilterDesign,
+    target: Target,
+    options: Options,
+    files: list[GeneratedFile],
+    cells: tuple[CellCounts, ...] = (),
 ) -> str:
     """Return the manifest of rendered files."""
     if target.kind == "fpga":
         options = fpga_options_of(target, options)
-    document = {
+    document: dict[str, object] = {
         "schema": MANIFEST_SCHEMA,
         "hostkit": __version__,
         "target": target.name,
@@ -43,6 +55,8 @@ def manifest_text(
         "files": {file.path: sha256(file.content.encode("utf-8")) for file in files},
         "options": options_document(options),
     }
+    if cells:
+        document["cells"] = [asdict(counts) for counts in cells]
     return json.dumps(document, indent=2, sort_keys=True) + "\n"
 
 
@@ -83,6 +97,7 @@ def read_manifest(folder: Path) -> Manifest:
             raise ValueError(f"schema is {document['schema']!r}")
         target, design = str(document["target"]), str(document["design"])
         options = _options_of(target, document.get("options"))
+        cells = tuple(_cells(counts) for counts in document.get("cells", ()))
     except OSError as error:
         raise RenderError(
             f"{folder} holds no {MANIFEST}; it was not made by `hostkit generate`"
@@ -91,13 +106,24 @@ def read_manifest(folder: Path) -> Manifest:
         raise RenderError(f"{path} is not a manifest of hostkit: {str(error)[:100]}") from error
     for name, _ in files:
         _require_inside(path, name)
-    return Manifest(target=target, digest=design, files=files, options=options)
+    return Manifest(target=target, digest=design, files=files, options=options, cells=cells)
 
 
 def _require_inside(path: Path, name: str) -> None:
     pure = PurePosixPath(name)
     if pure.is_absolute() or ".." in pure.parts or not pure.parts:
         raise RenderError(f"{path} names {name!r}, which is outside its folder")
+
+
+def _cells(document: Any) -> CellCounts:
+    return CellCounts(
+        entity=str(document["entity"]),
+        lut=int(document["lut"]),
+        flip_flops=int(document["flip_flops"]),
+        dsp=int(document["dsp"]),
+        block_ram=int(document["block_ram"]),
+        tool=str(document["tool"]),
+    )
 
 
 def _options_of(target: str, document: Any) -> Options:
@@ -114,6 +140,9 @@ def _fpga_options(document: Any) -> FpgaOptions:
         channels=int(document["channels"]),
         pipelined=bool(document["pipelined"]),
         clock_hz=None if document["clock_hz"] is None else int(document["clock_hz"]),
+        oscillator_hz=(
+            None if document["oscillator_hz"] is None else int(document["oscillator_hz"])
+        ),
         baud=None if document["baud"] is None else int(document["baud"]),
         profile=document["profile"],
         system_id=int(document["system_id"]),

@@ -1,7 +1,6 @@
 """From a design to files in a folder: render, compare, write."""
 
 import re
-from dataclasses import fields
 from pathlib import Path
 
 from hostkit.design_file import design_text
@@ -10,10 +9,12 @@ from hostkit.errors import HostkitError, RenderError
 from hostkit.files import write_aside
 from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.choices import Options, default_options
-from hostkit.render.context import RenderContext, render_context
+from hostkit.render.context import render_context
 from hostkit.render.environment import environment, template_root
+from hostkit.render.fpga_report import CellCounts
 from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
 from hostkit.render.options import FirmwareOptions
+from hostkit.render.templates import checked, render_folders
 from hostkit.targets import TARGETS, Target
 
 DESIGN = "design.json"
@@ -23,32 +24,27 @@ SKETCH_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,61}[A-Za-z0-9_-]|[A-Za-z
 
 
 def render_target(
-    design: FilterDesign, target: Target, options: Options | None = None
+    design: FilterDesign,
+    target: Target,
+    options: Options | None = None,
+    *,
+    cells: tuple[CellCounts, ...] = (),
 ) -> tuple[GeneratedFile, ...]:
     """Render the files that come from hostkit's own templates, sorted by path.
+
+    Parameters
+    ----------
+    cells
+        Resources of an FPGA, if they were measured.
 
     Raises
     ------
     HostkitError
         If the design or the options do not fit the target.
     """
-    context = render_context(design, target, options)
-    root = template_root(target.kind)
-    env = environment(root)
-    names = {field.name: getattr(context, field.name) for field in fields(RenderContext)}
-    files = []
-    for folder in (*target.folders, _filter_folder(design, context.options)):
-        for path in sorted(p for p in (root / folder).rglob("*") if p.is_file()):
-            template = path.relative_to(root).as_posix()
-            output = path.relative_to(root / folder).as_posix()
-            if path.suffix == ".j2":
-                text = env.get_template(template).render(banner=context.banner(template), **names)
-                files.append(
-                    GeneratedFile(path=output.removesuffix(".j2"), content=_checked(text, template))
-                )
-            else:
-                files.append(GeneratedFile(path=output, content=path.read_text(encoding="ascii")))
-    return _sorted_unique(files)
+    context = render_context(design, target, options, cells=cells)
+    folders = (*target.folders, _filter_folder(design, context.options))
+    return _sorted_unique(render_folders(context, folders))
 
 
 def _filter_folder(design: FilterDesign, options: FirmwareOptions) -> str:
@@ -62,6 +58,7 @@ def generate(
     options: Options | None = None,
     *,
     folder: Path | None = None,
+    cells: tuple[CellCounts, ...] = (),
 ) -> tuple[GeneratedFile, ...]:
     """Return everything that `hostkit generate` writes: code, MAVLink headers, design, manifest.
 
@@ -70,6 +67,8 @@ def generate(
     folder
         Where it will be written. An Arduino sketch has the name of its folder, so without one, or
         with a name that the Arduino IDE does not allow, there is none.
+    cells
+        Resources of an FPGA, if they were measured; they stand in its README and manifest.
 
     Raises
     ------
@@ -77,13 +76,13 @@ def generate(
         If the design or the options do not fit the target.
     """
     options = default_options(target) if options is None else options
-    files = list(render_target(design, target, options))
+    files = list(render_target(design, target, options, cells=cells))
     if target.kind == "mcu":
         files.extend(c_headers())
     files.extend(_sketch(design, target, options, folder))
     files.append(GeneratedFile(path=DESIGN, content=design_text(design)))
     files.append(
-        GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files))
+        GeneratedFile(path=MANIFEST, content=manifest_text(design, target, options, files, cells))
     )
     return _sorted_unique(files)
 
@@ -96,13 +95,7 @@ def _sketch(
         return ()
     banner = render_context(design, target, options).banner(SKETCH)
     text = environment(template_root(target.kind)).get_template(SKETCH).render(banner=banner)
-    return (GeneratedFile(path=f"{name}.ino", content=_checked(text, SKETCH)),)
-
-
-def _checked(text: str, template: str) -> str:
-    if not text.isascii() or "\r" in text:
-        raise RenderError(f"{template} rendered to text that is not ASCII with line feeds")
-    return text
+    return (GeneratedFile(path=f"{name}.ino", content=checked(text, SKETCH)),)
 
 
 def _sorted_unique(files: list[GeneratedFile]) -> tuple[GeneratedFile, ...]:

@@ -1,11 +1,13 @@
 """Runs one of the tools to its end and says in one line why it failed."""
 
+import re
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
 from hostkit.errors import BuildError
 
+_PLACE = re.compile(r"\.\w+:\d+:")
 _NOISE = (":warning:", ":note:", "Warning:", "Info:")
 
 
@@ -36,8 +38,9 @@ def run_tool(command: Sequence[str], cwd: Path, *, timeout_s: float) -> str:
 
 
 def first_complaint(output: str) -> str:
-    """Return the first line that names an error, or else the first that is no warning."""
+    """Return the first line that is an error, names a place, or else is no warning."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
-    errors = [line for line in lines if "error" in line.lower()]
-    others = [line for line in lines if not any(noise in line for noise in _NOISE)]
-    return next(iter(errors + others), "")
+    lines = [line for line in lines if not any(noise in line for noise in _NOISE)]
+    places = [line for line in lines if _PLACE.search(line)]
+    errors = [line for line in lines if line.startswith("ERROR")]
+    return next(iter(errors + places + lines), "")

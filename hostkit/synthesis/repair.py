@@ -1,9 +1,10 @@
 """Checks and repairs the Verilog that GHDL 2.0 writes.
 
-Its writer has four known faults. A ``case`` loses its default, a signed shift its sign, and a
+Its writer has five known faults. A ``case`` loses its default, a signed shift its sign, and a
 constant of more than 32 bits becomes a text: the VHDL avoids these three, and here they are only
-looked for. A signed product is written as an unsigned one of extended operands, which costs more
-multipliers: that one is repaired.
+looked for. Two are repaired: a signed product is written as an unsigned one of extended operands,
+which costs more multipliers, and a signal called like the instance and the port that drive it is
+declared twice and driven by itself.
 """
 
 import re
@@ -17,8 +18,10 @@ _MARK = "// smul"
 _END = "endmodule\n"
 _SIGNED = re.compile(r"assign (\w+) = \{\{\d+\{(\w+)\[\d+\]\}\}, (\w+)\}; // sext")
 _UNSIGNED = re.compile(r"assign (\w+) = \{\d+'b0+, \w+\}; +// +uext")
+_DECLARED = re.compile(r"^(?:module|  (?:wire|reg)(?: \[[^]]*\])?) (\w+)", re.MULTILINE)
+_CASE = re.compile(r"^ *case[xz]? .*?^ *endcase", re.MULTILINE | re.DOTALL)
+_CHOICE = re.compile(r"^ *(\d+)'b([01]+):", re.MULTILINE)
 _FAULTS = (
-    ("a case without a default", re.compile(r"^\s*case[xz]?\b", re.MULTILINE)),
     ("a signed shift without its sign", re.compile(r"\$signed\([^)]*\) >> ")),
     ("a long constant as a text", re.compile(r'"')),
 )
@@ -39,12 +42,13 @@ class Repair:
 
 
 def repair(text: str) -> Repair:
-    """Restore the signed products; :func:`check` refuses what cannot be repaired.
+    """Restore signed products and signals that are declared twice.
 
     Raises
     ------
     BuildError
-        If a product is neither of two sign-extended nor of two zero-extended operands.
+        If a product is neither of two sign-extended nor of two zero-extended operands, or two
+        wires of one name are not the same.
     """
     parts = [_repaired(module) for module in text.split(_END)]
     return Repair(
@@ -54,6 +58,7 @@ def repair(text: str) -> Repair:
 
 def _repaired(module: str) -> Repair:
     """Repair one module; the names of wires are its own."""
+    module = _declared_once(module)
     signed = {name: source for name, bit, source in _SIGNED.findall(module) if bit == source}
     unsigned = set(_UNSIGNED.findall(module))
     repaired = 0
@@ -73,6 +78,18 @@ def _repaired(module: str) -> Repair:
     return Repair(text=module, products=repaired)
 
 
+def _declared_once(module: str) -> str:
+    """Join a signal with the output of the same name that drives it."""
+    name, *wires = _DECLARED.findall(module) or [""]
+    for wire in sorted({wire for wire in wires if wires.count(wire) > 1}):
+        itself = f"  assign {wire} = {wire}; // (signal)\n"
+        if wires.count(wire) != 2 or module.count(itself) != 1:
+            raise BuildError(f"GHDL wrote two wires {wire} in {name}, and one is not the other")
+        line = next(m.group() for m in _DECLARED.finditer(module) if m.group(1) == wire)
+        module = module.replace(itself, "").replace(f"{line};\n", "", 1)
+    return module
+
+
 def check(text: str) -> None:
     """Refuse converted Verilog that holds one of the faults that cannot be repaired.
 
@@ -81,10 +98,21 @@ def check(text: str) -> None:
     BuildError
         Naming the fault and the VHDL line it comes from.
     """
+    for case in _CASE.finditer(text):
+        if not _is_full(case.group()):
+            place = place_of(text, case.start())
+            raise BuildError(f"GHDL wrote a case without a default, at {place}")
     for fault, pattern in _FAULTS:
         match = pattern.search(text)
         if match is not None:
             raise BuildError(f"GHDL wrote {fault}, at {place_of(text, match.start())}")
+
+
+def _is_full(case: str) -> bool:
+    """Say whether a case has every choice, as one that reads a vector by an index."""
+    choices = {(int(width), digits) for width, digits in _CHOICE.findall(case)}
+    widths = {width for width, _ in choices}
+    return len(widths) == 1 and len(choices) == 2 ** widths.pop()
 
 
 def place_of(text: str, position: int) -> str:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from hostkit.targets.board import Board
+from hostkit.targets.clocking import ClockMaker
 from hostkit.targets.uart import FixedRates, UartClock
 
 
@@ -18,13 +20,20 @@ class Target:
         Template folders below ``firmware_templates`` or ``hdl_templates``, next to the folder of
         the filter, whose files make up the output.
     clock_hz
-        Clock of the processor, or 0 where there is none to set.
+        Clock of the processor, or 0 where there is none to set; of an FPGA the one that it makes
+        if no other is asked for.
     baud
         Rate of the telemetry link if no other is asked for, bit/s.
     uart
         How the port of that link makes a rate; None where nothing is divided.
     arduino
         Whether the Arduino IDE can build the code, so that it gets a sketch.
+    boards
+        For an FPGA: the boards that the top is made for; the first one's oscillator is assumed.
+    clock_maker
+        For an FPGA: how it makes its clock from the oscillator.
+    family
+        For an FPGA: name of its family in :mod:`hostkit.synthesis`.
     """
 
     name: str
@@ -35,3 +44,6 @@ class Target:
     baud: int = 0
     uart: UartClock | FixedRates | None = None
     arduino: bool = False
+    boards: tuple[Board, ...] = ()
+    clock_maker: ClockMaker | None = None
+    family: str = ""

@@ -9,10 +9,13 @@ from vectors import against_the_limit, near_1_g
 
 from hostkit.filters.complementary import lower
 from hostkit.records import FilterDesign
+from hostkit.render import render_target
+from hostkit.targets import TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 GENERATED = ROOT / "generated"
-TARGET_NAMES = ("host", "atmega328p", "spartan3adsp")
+MCU_NAMES = ("host", "atmega328p")
+FPGA_NAME = "spartan3adsp"
 VECTORS = "vectors.txt"
 HEADER = "accel x y z, gyro x y z: s16 counts; roll, pitch: s32 half turns; restarted"
 BIAS_HEADER = "; bias: s32 half turns per sample with {} fraction bits"
@@ -22,6 +25,7 @@ BIAS_HEADER = "; bias: s32 half turns per sample with {} fraction bits"
 class Sample:
     name: str
     design: FilterDesign
+    fpga_names: tuple[str, ...] = (FPGA_NAME,)
 
     @property
     def folder(self) -> Path:
@@ -57,8 +61,29 @@ SAMPLES = (
             low_pass_setting=5,
         ),
     ),
-    Sample("all-parameters", all_parameters()),
+    Sample("all-parameters", all_parameters(), ("spartan3adsp", "ecp5")),
 )
+
+
+def target_files(sample: Sample, name: str) -> dict[str, str]:
+    """Return path and content of all files of a target."""
+    return {file.path: file.content for file in render_target(sample.design, TARGETS[name])}
+
+
+def committed_files(sample: Sample) -> dict[str, str]:
+    """Return what of the targets is committed.
+
+    An FPGA takes some fifty files, so the first sample has all of them, and the others only those
+    that are not the same there.
+    """
+    found = {}
+    shared = {} if sample is SAMPLES[0] else target_files(SAMPLES[0], FPGA_NAME)
+    for name in (*MCU_NAMES, *sample.fpga_names):
+        common = {} if name in MCU_NAMES else shared
+        for path, content in target_files(sample, name).items():
+            if common.get(path) != content:
+                found[f"{name}/{path}"] = content
+    return found
 
 
 def stimulus() -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from boards import changed
 from c_filter import c_response
-from samples import SAMPLES, TARGET_NAMES, VECTORS, Sample
+from samples import FPGA_NAME, SAMPLES, VECTORS, Sample, committed_files
 
 from hostkit.design_file import design_text
 from hostkit.emulation.ghdl import analyse, simulate
@@ -13,8 +13,6 @@ from hostkit.errors import ToolMissingError
 from hostkit.filters import FILTERS
 from hostkit.filters.complementary import lower
 from hostkit.records import AXES
-from hostkit.render import render_target
-from hostkit.targets import TARGETS
 
 COLUMN = {"roll": 0, "pitch": 1}
 
@@ -34,10 +32,7 @@ def expected_files(sample: Sample) -> dict[str, str]:
     files = {"design.json": design_text(sample.design)}
     rows = np.hstack([sample.counts, python_response(sample, sample.counts)])
     files[VECTORS] = sample.header + "\n" + "".join(" ".join(map(str, row)) + "\n" for row in rows)
-    for name in TARGET_NAMES:
-        for file in render_target(sample.design, TARGETS[name]):
-            files[f"{name}/{file.path}"] = file.content
-    return files
+    return files | committed_files(sample)
 
 
 @pytest.fixture(params=SAMPLES, ids=str)
@@ -93,8 +88,9 @@ def test_committed_vhdl_gives_the_committed_vectors(sample: Sample, tmp_path: Pa
     counts, response = committed_vectors(sample)
     code = tmp_path / "vhdl"
     code.mkdir()
-    for path in (sample.folder / "spartan3adsp").iterdir():
-        (code / path.name).write_bytes(path.read_bytes())
+    for owner in (SAMPLES[0], sample):
+        for path in (owner.folder / FPGA_NAME).glob("*.vhd"):
+            (code / path.name).write_bytes(path.read_bytes())
     try:
         analyse(code)
         run = simulate(code, counts[:, :3], counts[:, 3:])

@@ -15,8 +15,8 @@ ACCEL = np.array([[0, 0, 16384], [100, -200, 16000]], dtype=np.int64)
 GYRO = np.zeros_like(ACCEL)
 RESULTS = (
     "0123456789ab\n"
-    "00000000 ffffffff 00000007 fffffff9 1 48\n"
-    "7fffffff 80000000 00000000 00000000 0 48\n"
+    "0000 00000000 ffffffff 00000007 fffffff9 1 0 9 48\n"
+    "0003 7fffffff 80000000 00000000 00000000 0 1 58 48\n"
 )
 
 
@@ -64,8 +64,8 @@ def test_a_folder_that_was_not_analysed_is_refused(folder: Path, fake_ghdl: Path
 @pytest.mark.usefixtures("ghdl_installed")
 def test_the_first_error_of_ghdl_is_the_message(folder: Path) -> None:
     source = folder / "hk_arctan.vhd"
-    source.write_text(source.read_text().replace("turn_v  :=", "trun_v  :="))
-    with pytest.raises(BuildError, match=r'hk_arctan\.vhd:\d+:\d+: no declaration for "trun_v"'):
+    source.write_text(source.read_text().replace("turn_r  <=", "trun_r  <="))
+    with pytest.raises(BuildError, match=r'hk_arctan\.vhd:\d+:\d+: no declaration for "trun_r"'):
         ghdl.analyse(folder)
 
 
@@ -93,6 +93,9 @@ def test_results_are_read(folder: Path, fake_ghdl: Path) -> None:
     assert run.angle_raw.tolist() == [[0, -1], [2**31 - 1, -(2**31)]]
     assert run.hidden_raw.tolist() == [[7, -7], [0, 0]]
     assert run.restarted.tolist() == [True, False]
+    assert run.channel.tolist() == [0, 3]
+    assert run.saturated.tolist() == [False, True]
+    assert run.taken_cycle.tolist() == [9, 58]
     assert run.latency_cycles.tolist() == [48, 48]
     assert seen
     assert seen[-1] == 2
@@ -104,10 +107,11 @@ def test_results_are_read(folder: Path, fake_ghdl: Path) -> None:
         ("", "no results"),
         ("0123456789AB\n", "not a digest"),
         (RESULTS.rsplit("\n", 2)[0] + "\n", "1 results for 2 samples"),
-        (RESULTS + "00000000 00000000 00000000 00000000 0 48\n", "3 results for 2 samples"),
+        (RESULTS + RESULTS.splitlines()[1] + "\n", "3 results for 2 samples"),
         (RESULTS.replace("ffffffff", "XXXXXXXX"), "is not a result"),
         (RESULTS.replace("00000007 ", ""), "is not a result"),
         (RESULTS.replace("fffffff9 1", "fffffff9 2"), "is not a result"),
+        (RESULTS.replace("0003 ", ""), "is not a result"),
     ],
 )
 def test_odd_results_are_refused(

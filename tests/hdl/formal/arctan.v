@@ -1,0 +1,19 @@
+module properties #(parameter LATENCY = 0) (input clk, any_rst, in_valid, out_ready);
+  reg begun = 0;
+  always @(posedge clk) begun <= 1;
+  wire rst = any_rst || !begun;
+  wire in_ready, out_valid;
+  wire [31:0] angle;
+  wire [29:0] length;
+  wire [17:0] stretch;
+  hk_arctan core (
+    .clk(clk), .rst(rst), .in_valid(in_valid), .in_ready(in_ready),
+    .out_valid(out_valid), .out_ready(out_ready),
+    .angle(angle), .length(length), .stretch(stretch)
+  );
+  stream_checker #(.PAYLOAD(80), .LATENCY(LATENCY)) checker_of_arctan (
+    .clk(clk), .rst(rst), .begun(begun), .in_valid(in_valid), .in_ready(in_ready),
+    .in_channel(1'b0), .out_valid(out_valid), .out_ready(out_ready), .out_channel(1'b0),
+    .payload({angle, length, stretch})
+  );
+endmodule
