@@ -96,7 +96,7 @@ def emulate_system(
 
 def _first_us(folder: Path, table: IntArray, timing: SystemTiming) -> int:
     """Return when the first row is sampled if nothing goes wrong."""
-    frames = Decoder().feed(run_system(folder, table[:1], timing).stream)
+    frames = Decoder().feed(run_system(folder, table[:3], timing).stream)
     times = [frame.message.time_usec for frame in frames if frame.name == "TILT_SAMPLE"]
     if not times:
         raise EmulationError("the simulated system sent no sample")
