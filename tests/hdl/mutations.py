@@ -174,7 +174,8 @@ MUTATIONS = (
         (
             "result moves while it waits",
             "sum_v := hk_sum(angle_now_r, addend_v, carry_v);",
-            "sum_v := hk_sum(angle_now_r, addend_v, carry_v);\n      if state_r = finished and multiply_r = '1' then\n        angle_now_r <= sum_v;\n      end if;\n      if state_r = finished and in_valid = '1' then\n        restarted_r <= '1';\n      end if;",
+            "sum_v := hk_sum(angle_now_r, addend_v, carry_v);\n"
+            "if state_r = finished and in_valid = '1' then restarted_r <= '1'; end if;",
         ),
         (
             "valid falls without ready",
