@@ -20,6 +20,7 @@ IntArray = NDArray[np.int64]
 TOP = "hk_complementary_fixed"
 FULL_COUNTS = (-32768, -32767, 32767)
 """A count of these stands at the end of its range."""
+NEAR_THE_END = (*FULL_COUNTS, -32766, 32766)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +60,9 @@ def vectors(configuration: Configuration, samples: int) -> IntArray:
     counts = np.hstack(count_vectors())
     if len(configuration.design.parameters) > 1:
         counts = np.hstack(option_vectors(configuration.design))
-    chosen = counts[rng.permutation(len(counts))[:samples]]
+    ends = np.full((len(NEAR_THE_END), 6), 1000)
+    ends[np.arange(len(ends)), np.arange(len(ends)) % 6] = NEAR_THE_END
+    chosen = np.vstack([counts[rng.permutation(len(counts))[: samples - len(ends)]], ends])
     used = min(configuration.channels, max(1, samples // 4))
     ids = rng.choice(configuration.channels, used, replace=False)
     return np.hstack([rng.choice(ids, (samples, 1)), chosen])

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from cocotb_run import run_bench
 from designs import all_parameters, design
-from formal.prove import prove
+from formal.prove import FOLDER, prove
 from gate_cases import TOP, Configuration, assert_equal, generate, vectors
 from mutations import MUTATIONS, Mutation
 
@@ -23,11 +23,13 @@ from hostkit.synthesis.netlist import play
 
 SAMPLES = 250
 BENCHES = Path(__file__).parent / "benches"
+NARROW = {"DIFFERENCE_BITS": 8, "BLEND_BITS": 6}
 UART = {"CLOCK_HZ": 40_000_000, "BAUD": 10_000_000}
 
 DESIGNS: dict[str, FilterDesign] = {
     "measured": design(eta=0.001),
     "options": all_parameters(),
+    "functions": all_parameters(),
     "arcsin": design(tilt="arcsin"),
 }
 
@@ -57,6 +59,12 @@ def _handshake(folder: Path, work: Path) -> None:
     assert prove(core, "complementary", work, {"LATENCY": 52}).proved
 
 
+def _functions(folder: Path, work: Path) -> None:
+    shutil.copy(FOLDER / "functions.vhd", folder)
+    core = convert(folder, "functions", NARROW).text
+    assert prove(core, "functions", work, NARROW, free_products=False).proved
+
+
 def _bench(folder: Path, work: Path, check: str, built: FilterDesign) -> None:
     """Run the cocotb bench of a block."""
     text = {name: str(value) for name, value in UART.items()}
@@ -84,13 +92,18 @@ def _run(
     few.mkdir(parents=True)
     for name in needed_sources(folder, entity):
         shutil.copy(folder / name, few)
-    run_bench(few, entity, bench, build=work, parameters=generics, environment=environment)
+    try:
+        run_bench(few, entity, bench, build=work, parameters=generics, environment=environment)
+    except SystemExit as error:
+        raise AssertionError(f"{bench} fails") from error
 
 
 def _check(folder: Path, work: Path, check: str) -> None:
     built = DESIGNS.get(check, design())
     if check == "handshake":
         _handshake(folder, work)
+    elif check == "functions":
+        _functions(folder, work)
     elif check in {"uart", "mavlink", "stopwatch"}:
         _bench(folder, work, check, built)
     else:
