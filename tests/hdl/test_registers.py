@@ -1,11 +1,15 @@
+import shutil
 from pathlib import Path
 
 import pytest
 from cocotb_run import run_bench
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
 from designs import all_parameters, design
 
 from hostkit.records import FilterDesign
 from hostkit.render import render_target, write
+from hostkit.synthesis.convert import convert
 from hostkit.targets import TARGETS
 
 BENCHES = Path(__file__).parent / "benches"
@@ -50,3 +54,32 @@ def test_the_bus_sees_the_described_registers(
         more_sources=[BENCHES / "hk_regs_bench.vhd"],
         environment={"DESIGN": name},
     )
+
+
+@pytest.mark.usefixtures("ghdl_installed")
+def test_the_converted_verilog_behaves_alike(tmp_path: Path) -> None:
+    """The writer of GHDL has its limits, and what it gets wrong it does not tell."""
+    if shutil.which("iverilog") is None:
+        pytest.skip("iverilog is not installed")
+    folder = _core(design(), tmp_path / "core")
+    shutil.copy(BENCHES / "hk_regs_bench.vhd", folder)
+    converted = convert(folder, "hk_regs_bench", {"WISHBONE": True})
+    source = tmp_path / "hk_regs_bench.v"
+    source.write_text(converted.text, encoding="ascii")
+    runner = get_runner("icarus")
+    build = tmp_path / "build"
+    timescale = ("1ns", "1ps")
+    runner.build(
+        sources=[source], hdl_toplevel="hk_regs_bench", build_dir=build, timescale=timescale
+    )
+    results = runner.test(
+        hdl_toplevel="hk_regs_bench",
+        test_module="wishbone_bench",
+        build_dir=build,
+        test_dir=build,
+        timescale=timescale,
+        extra_env={"DESIGN": "plain"},
+    )
+    tests, failed = get_results(results)
+    assert tests > 20
+    assert failed == 0

@@ -234,7 +234,7 @@ def _read(field: Field) -> str:
         quote = "'" if field.width == 1 else '"'
         return f"{quote}{field.reset:0{field.width}b}{quote}" if field.reset else ""
     if field.source == "setting":
-        return f"std_logic_vector(resize(written_r.{field.element}, {WORD_BITS}))"
+        return f"std_logic_vector(resize({field.element}_r, {WORD_BITS}))"
     if field.source == "decoder" or field.latched_by:
         name = f"{field.element}_r"
     else:

@@ -55,7 +55,7 @@ entity hk_regs_bench is
     uart_framing : in std_logic;
     uart_data : in std_logic_vector(7 downto 0);
     uart_valid : in std_logic;
-    sequence : in unsigned(31 downto 0);
+    sample_sequence : in unsigned(31 downto 0);
     time_us : in unsigned(63 downto 0);
     angle_roll : in signed(31 downto 0);
     angle_pitch : in signed(31 downto 0);
@@ -121,7 +121,7 @@ begin
   from_core.uart_framing <= uart_framing;
   from_core.uart_data <= uart_data;
   from_core.uart_valid <= uart_valid;
-  from_core.sequence <= sequence;
+  from_core.sequence <= sample_sequence;
   from_core.time_us <= time_us;
   from_core.angle_roll <= angle_roll;
   from_core.angle_pitch <= angle_pitch;
