@@ -1,16 +1,15 @@
 """Bit-true model of the rectangular-to-polar core: angle, arc sine and magnitude of counts.
 
 The angle is that of :mod:`hostkit.filters.arctan`, digit by digit. Its length is longer than the
-vector by the stretch of the turn, ``sqrt(1 + (turn / 64)**2)``, which the table of shrinks takes off
-again with one product::
+vector by the stretch of the turn, ``sqrt(1 + (turn / 64)**2)``, which one product takes off again::
 
     magnitude = length - floor(length * shrink / 2**18)
 
 Against the exact values, for whole counts: the angle of any vector but zero is within
-``ANGLE_ERROR_DEG``. An arc sine is within ``ARCSIN_ERROR_DEG`` where 1 g is ARCSIN_LEAST_ONE counts or
-more. It is ill-conditioned next to +-90 deg, where it is the angle of a small root whose unit is
-1/256 count: with fewer counts in 1 g the error there grows, to 0.023 deg at 1 g = 2 counts. A magnitude
-is within ``MAGNITUDE_RELATIVE`` of itself and ``MAGNITUDE_COUNTS``.
+``ANGLE_ERROR_DEG``. An arc sine is within ``ARCSIN_ERROR_DEG`` where 1 g is ``ARCSIN_LEAST_ONE``
+counts or more. It is ill-conditioned next to +-90 deg, where it is the angle of a small root whose
+unit is 1/256 count: with fewer counts in 1 g the error there grows, to 0.023 deg where 1 g is 2
+counts. A magnitude is within ``MAGNITUDE_RELATIVE`` of itself and ``MAGNITUDE_COUNTS``.
 """
 
 import math
@@ -36,7 +35,7 @@ ONE_LIMIT = 2**15 - 1
 ANGLE_ERROR_DEG = 0.0001
 ARCSIN_ERROR_DEG = 0.0005
 ARCSIN_LEAST_ONE = 512
-MAGNITUDE_RELATIVE = 1.5e-5
+MAGNITUDE_RELATIVE = 4e-6
 MAGNITUDE_COUNTS = 0.001
 
 IntArray = NDArray[np.int64]
@@ -97,9 +96,7 @@ def polar_arcsin(table: ArctanTable, y: IntArray, one: IntArray) -> tuple[IntArr
     return wrap32(np.where(y < 0, -angle, angle)), magnitude
 
 
-def _angle_and_magnitude(
-    table: ArctanTable, y: IntArray, x: IntArray
-) -> tuple[IntArray, IntArray]:
+def _angle_and_magnitude(table: ArctanTable, y: IntArray, x: IntArray) -> tuple[IntArray, IntArray]:
     angle, length, stretch = vector_angle(table, y, x)
     shrink = np.array(shrinks_raw(table))[np.searchsorted(table.stretches_raw, stretch)]
     return angle, length - ((length * shrink) >> STRETCH_FRACTION_BITS)
