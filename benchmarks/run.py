@@ -7,7 +7,17 @@ import time
 from hostkit.cli.inputs import say
 from hostkit.errors import HostkitError
 
-BENCHES = ("kernel", "tuning", "rules", "several", "functions", "correlation", "device", "large")
+BENCHES = (
+    "kernel",
+    "tuning",
+    "rules",
+    "several",
+    "functions",
+    "correlation",
+    "device",
+    "fpga",
+    "large",
+)
 """Modules of this folder; each has a function `tables`."""
 
 

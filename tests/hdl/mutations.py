@@ -91,16 +91,16 @@ MUTATIONS = (
         ("no zero rule", "nothing_r <= '1'", "nothing_r <= '0'"),
         (
             "sort by the wrong side",
-            "if digit_v = '1' then\n          part_r",
-            "if digit_v = '0' then\n          part_r",
+            "if digit_v = '1' then\n          along_r",
+            "if digit_v = '0' then\n          along_r",
         ),
         ("behind is ahead", "(steep_r and below_r)", "(steep_r and behind_r)"),
         (
             "a digit less",
-            "if count_r = turn_digits_c - 1 then",
-            "if count_r = turn_digits_c - 2 then",
+            "          if count_r(turn_digits_c - 1) = '1' then",
+            "          if count_r(turn_digits_c - 2) = '1' then",
         ),
-        ("octant not negated", "if negate_r = '1' then", "if negate_r = '0' then"),
+        ("octant not negated", "octant_r xor negate_v, negate_r", "octant_r xor negate_v, '0'"),
         ("length not corrected", 'along_r + (unsigned(product(30 downto 16)) & "000")', "along_r"),
         ("second angle of the first length", "behind_r    <= '0';", "behind_r    <= x_negative;"),
     ),
@@ -174,7 +174,8 @@ MUTATIONS = (
         (
             "result moves while it waits",
             "sum_v := hk_sum(angle_now_r, addend_v, carry_v);",
-            "sum_v := hk_sum(angle_now_r, addend_v, carry_v);\n      if state_r = finished and multiply_r = '1' then\n        angle_now_r <= sum_v;\n      end if;\n      if state_r = finished and in_valid = '1' then\n        restarted_r <= '1';\n      end if;",
+            "sum_v := hk_sum(angle_now_r, addend_v, carry_v);\n"
+            "if state_r = finished and in_valid = '1' then restarted_r <= '1'; end if;",
         ),
         (
             "valid falls without ready",

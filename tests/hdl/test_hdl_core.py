@@ -217,7 +217,7 @@ def test_a_fault_in_the_options_is_found(tmp_path: Path, source: str, good: str,
 @pytest.mark.parametrize(
     ("good", "bad", "complaint"),
     [
-        ("out_valid   <= '1' when state_r = finished else '0'", "out_valid <= '0'", SILENT),
+        ("if arctan_done = '1' then", "if false then", SILENT),
         ("in_ready    <= '1' when state_r = idle else '0'", "in_ready <= '1'", GREEDY),
         ("if out_ready = '1' then", "if true then", "takes back a result"),
         ("busy        <= '0' when state_r = idle else '1'", "busy <= '0'", "is not busy"),

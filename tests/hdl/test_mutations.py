@@ -92,7 +92,10 @@ def _run(
     few.mkdir(parents=True)
     for name in needed_sources(folder, entity):
         shutil.copy(folder / name, few)
-    run_bench(few, entity, bench, build=work, parameters=generics, environment=environment)
+    try:
+        run_bench(few, entity, bench, build=work, parameters=generics, environment=environment)
+    except SystemExit as error:
+        raise AssertionError(f"{bench} fails") from error
 
 
 def _check(folder: Path, work: Path, check: str) -> None:
