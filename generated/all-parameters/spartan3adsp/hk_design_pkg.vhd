@@ -11,6 +11,10 @@ package hk_design_pkg is
   -- Which design, and the sample rate its coefficients hold for: 100.0 Hz.
   constant design_digest_c : std_logic_vector(47 downto 0) := x"0099cab74159";
 
+  -- Size of the core: sensors that it serves, and whether it takes a sample a clock.
+  constant channels_c  : positive := 1;
+  constant pipelined_c : boolean  := false;
+
   -- Axes and tilt method (arc sine of one component, or arc tangent of two).
   constant has_roll_c    : boolean := true;
   constant has_pitch_c   : boolean := true;

@@ -1,179 +1,238 @@
 -- Arc tangent and length of a vector. The first digits of the smaller component over the larger one
 -- choose a turn from a table, and what they leave lies across the vector that is turned by it; the
--- digits of that give the rest of the angle. One digit a clock; the result is there turn_digits_c +
--- ratio_digits_c + 3 clocks after the vector was taken. A zero vector gives zero and zero.
+-- digits of that give the rest of the angle. One digit a clock. A zero vector gives zero and zero.
+--
+-- With `second` a second angle follows: that of (length of the first vector, y_second). Its digits
+-- begin while the first angle is still being finished.
+--
+-- The multiplier is the caller's. Where `multiply` is 1 it takes the operands into registers on the
+-- next edge, the product is there one edge later and holds until the next multiplication. From a
+-- vector taken to its angle nobody else may multiply but in the turn_digits_c clocks after it.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
+use work.hk_common_pkg.all;
 use work.hk_design_pkg.all;
 
 entity hk_arctan is
   port (
-    clk        : in  std_logic;
-    rst        : in  std_logic;  -- synchronous, active high
-    in_valid   : in  std_logic;
-    in_ready   : out std_logic;
-    x          : in  unsigned(29 downto 0);  -- sizes, with guard bits
-    y          : in  unsigned(29 downto 0);
-    x_negative : in  std_logic;
-    y_negative : in  std_logic;
-    out_valid  : out std_logic;
-    out_ready  : in  std_logic;
-    angle      : out signed(31 downto 0);    -- half turns, wraps at +-pi
-    length     : out unsigned(29 downto 0);  -- times 1 + stretch / 2**stretch_fraction_bits_c
-    stretch    : out signed(17 downto 0)     -- there when the first digits are
+    clk             : in  std_logic;
+    rst             : in  std_logic;  -- synchronous, active high
+    in_valid        : in  std_logic;
+    in_ready        : out std_logic;
+    x               : in  unsigned(29 downto 0);  -- size, with guard bits
+    y               : in  unsigned(15 downto 0);  -- size, without
+    x_negative      : in  std_logic;
+    y_negative      : in  std_logic;
+    second          : in  std_logic;              -- the last three hold until out_valid
+    y_second        : in  unsigned(15 downto 0);
+    second_negative : in  std_logic;
+    zero            : in  signed(31 downto 0);    -- taken off the angle; holds until out_valid
+    out_valid       : out std_logic;              -- for one clock: there is an angle
+    angle           : out signed(31 downto 0);    -- half turns, wraps at +-pi; holds until the next
+    length          : out unsigned(29 downto 0);  -- times 1 + stretch / 2**stretch_fraction_bits_c,
+    stretch         : out signed(17 downto 0);    -- there with the angle, until a vector is taken
+    turn            : out unsigned(turn_digits_c - 1 downto 0);  -- with it
+    multiply        : out std_logic;
+    factor          : out signed(22 downto 0);
+    coefficient     : out signed(17 downto 0);
+    product         : in  signed(49 downto 0)
   );
 end entity hk_arctan;
 
 architecture rtl of hk_arctan is
 
+  constant stretch_shift_c : positive := stretch_fraction_bits_c - guard_bits_c;
+
   type state_t is (
     idle,
+    loading,   -- the second vector
+    sorting,   -- which component is the larger one
     turning,   -- the digits of the turn
-    widening,  -- turn the larger component
-    dividing,  -- the digits of the ratio
-    scaling,   -- multiply the ratio by the slope
-    folding,   -- out of the first octant
-    finished
+    widening,  -- turn the larger component: a clock for the product, then the sum
+    dividing   -- the digits of the ratio
   );
   signal state_r : state_t;
+  signal count_r : std_logic_vector(0 to ratio_digits_c - 1);  -- digits made: one is 1
 
-  signal multiply_r    : std_logic;
-  signal factor_r      : signed(31 downto 0);
-  signal coefficient_r : signed(17 downto 0);
-  signal product       : signed(49 downto 0);
+  signal along_r  : unsigned(30 downto 0);  -- the larger component, then turned
+  signal rest_r   : unsigned(31 downto 0);  -- of the smaller component, times two
+  signal part_r   : unsigned(21 downto 0);  -- of the smaller component
+  signal digits_r : unsigned(ratio_digits_c - 1 downto 0);
+  signal turn_r   : unsigned(turn_digits_c - 1 downto 0);
+  signal turned   : unsigned(30 downto 0);  -- the larger component with a product added to it
+  signal trial    : unsigned(32 downto 0);  -- rest less the larger component, and its sign
+  signal digits   : unsigned(ratio_digits_c - 1 downto 0);
+
+  signal steep_r     : std_logic;
+  signal behind_r    : std_logic;
+  signal below_r     : std_logic;
+  signal following_r : std_logic;  -- this is the second vector
+
+  -- What the end of an angle needs while the next vector is in work.
+  signal ending_r   : std_logic_vector(0 to 3);  -- a clock each: product, octant, fold, valid
+  signal quarters_r : std_logic_vector(1 downto 0);
+  signal negate_r   : std_logic;
+  signal nothing_r  : std_logic;
+  signal octant_r   : signed(31 downto 0);
+  signal base_r     : signed(31 downto 0);
 
 begin
 
   in_ready  <= '1' when state_r = idle else '0';
-  out_valid <= '1' when state_r = finished else '0';
+  out_valid <= ending_r(3);
+  length    <= along_r(29 downto 0);
+  stretch   <= to_signed(stretches_c(to_integer(turn_r)), 18);
+  turn      <= turn_r;
 
-  process (clk)
-    variable along_v    : unsigned(30 downto 0);  -- the larger component, then turned
-    variable part_v     : unsigned(21 downto 0);  -- of the smaller component
-    variable more_v     : unsigned(27 downto 0);  -- turn times that part
-    variable rest_v     : unsigned(31 downto 0);
-    variable trial_v    : unsigned(32 downto 0);
-    variable digits_v   : unsigned(ratio_digits_c - 1 downto 0);
-    variable count_v    : unsigned(3 downto 0);
-    variable turn_v     : unsigned(turn_digits_c - 1 downto 0);
-    variable steep_v    : std_logic;
-    variable behind_v   : std_logic;
-    variable below_v    : std_logic;
-    variable nothing_v  : boolean;
-    variable octant_v   : signed(31 downto 0);
-    variable quarters_v : signed(31 downto 0);  -- whole quarter turns
+  trial  <= ('0' & rest_r) - ("00" & along_r);
+  digits <= digits_r(ratio_digits_c - 2 downto 0) & not trial(32);
+
+  turned <= along_r + (unsigned(product(27 downto 0)) & "00") when state_r = widening
+            else along_r + (unsigned(product(30 downto 16)) & "000");
+
+  -- The turn widens the larger component. The first eight digits, squared, correct the length while
+  -- the others are made. The stretch of the second vector comes before the last digit, and the slope
+  -- with it.
+  operands : process (state_r, count_r, digits_r, digits, along_r, part_r, y_second, turn_r,
+                      product)
+  begin
+    multiply    <= '0';
+    factor      <= signed(shift_left(resize(digits, 23), 16 - ratio_digits_c));
+    coefficient <= slope_c;
+    if state_r = dividing then
+      if count_r(ratio_digits_c - 1) = '1' then
+        multiply <= '1';
+      elsif count_r(ratio_digits_c - 2) = '1' then
+        factor      <= signed(resize(y_second, 23));
+        coefficient <= to_signed(stretches_c(to_integer(turn_r)), 18);
+        multiply    <= '1';
+      elsif count_r(10) = '1' then
+        factor      <= signed(resize(along_r(30 downto 16), 23));
+        coefficient <= signed(resize(unsigned(product(15 downto 0)), 18));
+        multiply    <= '1';
+      elsif count_r(8) = '1' then
+        factor      <= signed(resize(digits_r(7 downto 0), 23));
+        coefficient <= signed(resize(digits_r(7 downto 0), 18)) + 1;
+        multiply    <= '1';
+      end if;
+    elsif state_r = turning and count_r(turn_digits_c - 1) = '1' then
+      factor      <= signed(resize(part_r, 23));
+      coefficient <= signed(resize(digits(turn_digits_c - 1 downto 0), 18));
+      multiply    <= '1';
+    end if;
+  end process operands;
+
+  division : process (clk)
+    variable digit_v : std_logic;
   begin
     if rising_edge(clk) then
-      multiply_r <= '0';
+      digit_v     := not trial(32);
+      ending_r(0) <= '0';
 
       if state_r = idle then
         if in_valid = '1' then
-          nothing_v := x = 0 and y = 0;
-          behind_v  := x_negative;
-          below_v   := y_negative;
-          steep_v   := '0';
-          along_v   := resize(x, 31);
-          rest_v    := resize(y, 32);
-          if y > x then
-            steep_v := '1';
-            along_v := resize(y, 31);
-            rest_v  := resize(x, 32);
-          end if;
-          part_v  := rest_v(29 downto 8);
-          more_v  := (others => '0');
-          count_v := (others => '0');
-          state_r <= turning;
+          along_r     <= shift_left(resize(y, 31), guard_bits_c);
+          rest_r      <= resize(x, 32);
+          behind_r    <= x_negative;
+          below_r     <= y_negative;
+          following_r <= '0';
+          state_r     <= sorting;
         end if;
 
-      elsif state_r = turning or state_r = dividing then
-        rest_v   := rest_v(30 downto 0) & '0';
-        trial_v  := ('0' & rest_v) - ("00" & along_v);
-        digits_v := digits_v(ratio_digits_c - 2 downto 0) & not trial_v(32);
-        count_v  := count_v + 1;
-        if trial_v(32) = '0' then
-          rest_v := trial_v(31 downto 0);
+      elsif state_r = loading then
+        along_r     <= shift_left(resize(y_second, 31), guard_bits_c)
+                       + unsigned(product(stretch_shift_c + 29 downto stretch_shift_c));
+        rest_r      <= resize(along_r, 32);
+        behind_r    <= '0';
+        below_r     <= second_negative;
+        following_r <= '1';
+        state_r     <= sorting;
+
+      elsif state_r = sorting then
+        -- So far y stands in along_r and x in rest_r.
+        steep_r <= trial(32);
+        rest_r  <= rest_r(30 downto 0) & '0';
+        if digit_v = '1' then
+          along_r <= rest_r(30 downto 0);
+          rest_r  <= along_r & '0';
         end if;
-        if state_r = turning then
-          more_v := more_v(26 downto 0) & '0';
-          if trial_v(32) = '0' then
-            more_v := more_v + part_v;
-          end if;
-          if count_v = turn_digits_c then
-            state_r <= widening;
-          end if;
-        else
-          -- The first eight digits, squared, correct the length while the others are made.
-          if count_v = 8 then
-            factor_r      <= signed(resize(digits_v(7 downto 0), 32));
-            coefficient_r <= signed(resize(digits_v(7 downto 0), 18)) + 1;
-            multiply_r    <= '1';
-          end if;
-          if count_v = 10 then
-            factor_r      <= signed(resize(along_v(30 downto 16), 32));
-            coefficient_r <= signed(resize(unsigned(product(15 downto 0)), 18));
-            multiply_r    <= '1';
-          end if;
-          if count_v = ratio_digits_c then
-            length <= along_v(29 downto 0)
-                      + (unsigned(product(30 downto 16)) & "000");
-            if nothing_v then
-              length <= (others => '0');
-            end if;
-            factor_r      <= signed(shift_left(resize(digits_v, 32), 16 - ratio_digits_c));
-            coefficient_r <= slope_c;
-            multiply_r    <= '1';
-            state_r       <= scaling;
-          end if;
-        end if;
+        count_r <= (0 => '1', others => '0');
+        state_r <= turning;
 
       elsif state_r = widening then
-        turn_v  := digits_v(turn_digits_c - 1 downto 0);
-        along_v := along_v + (more_v & "00");
-        stretch <= to_signed(stretches_c(to_integer(turn_v)), 18);
-        count_v := (others => '0');
-        state_r <= dividing;
-
-      elsif state_r = scaling then
-        state_r <= folding;
-
-      elsif state_r = folding then
-        octant_v := to_signed(angles_c(to_integer(turn_v)), 32)
-                    + product(slope_fraction_bits_c + 31 downto slope_fraction_bits_c);
-        quarters_v     := (others => '0');
-        quarters_v(30) := steep_v;
-        quarters_v(31) := (steep_v and below_v) or (behind_v and not steep_v);
-        if (steep_v xor behind_v xor below_v) = '1' then
-          angle <= quarters_v - octant_v;
-        else
-          angle <= quarters_v + octant_v;
+        turn_r  <= digits_r(turn_digits_c - 1 downto 0);
+        count_r <= '0' & count_r(0 to ratio_digits_c - 2);
+        if count_r(turn_digits_c + 1) = '1' then
+          along_r <= turned;
+          count_r <= (0 => '1', others => '0');
+          state_r <= dividing;
         end if;
-        if nothing_v then
-          angle <= (others => '0');
-        end if;
-        state_r <= finished;
 
       else
-        if out_ready = '1' then
+        if state_r = turning and count_r(0) = '1' then
+          part_r <= rest_r(30 downto 9);
+        end if;
+        rest_r <= rest_r(30 downto 0) & '0';
+        if digit_v = '1' then
+          rest_r <= trial(30 downto 0) & '0';
+        end if;
+        digits_r <= digits;
+        count_r  <= '0' & count_r(0 to ratio_digits_c - 2);
+        if state_r = turning then
+          if count_r(turn_digits_c - 1) = '1' then
+            state_r <= widening;
+          end if;
+        elsif count_r(ratio_digits_c - 1) = '1' then
+          along_r       <= turned;
+          ending_r(0)   <= '1';
+          quarters_r(0) <= steep_r;
+          quarters_r(1) <= (steep_r and below_r) or (behind_r and not steep_r);
+          negate_r      <= steep_r xor behind_r xor below_r;
+          nothing_r     <= '0';
+          if along_r(30 downto guard_bits_c) = 0 then
+            nothing_r <= '1';
+          end if;
           state_r <= idle;
+          if second = '1' and following_r = '0' then
+            state_r <= loading;
+          end if;
         end if;
       end if;
 
       if rst = '1' then
-        multiply_r <= '0';
-        state_r    <= idle;
+        ending_r(0) <= '0';
+        state_r     <= idle;
       end if;
     end if;
-  end process;
+  end process division;
 
-  multiplier : entity work.hk_multiplier
-    port map (
-      clk         => clk,
-      enable      => multiply_r,
-      factor      => factor_r,
-      coefficient => coefficient_r,
-      product     => product
-    );
+  -- The product of the slope, then out of the first octant.
+  finish : process (clk)
+    variable quarters_v : signed(31 downto 0);
+    variable negate_v   : signed(31 downto 0);
+  begin
+    if rising_edge(clk) then
+      ending_r(1 to 3) <= ending_r(0 to 2);
+      if ending_r(1) = '1' then
+        octant_r <= to_signed(angles_c(to_integer(turn_r)), 32)
+                    + product(slope_fraction_bits_c + 31 downto slope_fraction_bits_c);
+        if nothing_r = '1' then
+          octant_r <= (others => '0');
+        end if;
+        quarters_v               := (others => '0');
+        quarters_v(31 downto 30) := signed(quarters_r);
+        base_r                   <= quarters_v - zero;
+      end if;
+      if ending_r(2) = '1' then
+        negate_v := (others => negate_r);
+        angle <= hk_sum(base_r, octant_r xor negate_v, negate_r);
+      end if;
+      if rst = '1' then
+        ending_r(1 to 3) <= (others => '0');
+      end if;
+    end if;
+  end process finish;
 
 end architecture rtl;

@@ -29,6 +29,15 @@ package hk_common_pkg is
   -- Divide by 2**bits, rounding halves upwards, and keep the low 32 bits.
   function shift_rounded (product : signed(49 downto 0); bits : positive) return signed;
 
+  -- The same, rounding down: the bit below, product(bits - 1), is to be added as a carry.
+  function shift_floored (product : signed(49 downto 0); bits : positive) return signed;
+
+  -- Sum of two words and a carry in one adder; wraps.
+  function hk_sum (a, b : signed(31 downto 0); carry : std_logic) return signed;
+
+  -- Bits of an index 0 .. entries - 1, at least 1.
+  function hk_index_bits (entries : positive) return positive;
+
 end package hk_common_pkg;
 
 package body hk_common_pkg is
@@ -73,16 +82,39 @@ package body hk_common_pkg is
   end function clamped;
 
   function shift_rounded (product : signed(49 downto 0); bits : positive) return signed is
-    variable wide_v   : signed(81 downto 0);
     variable result_v : signed(31 downto 0);
   begin
     -- floor((p + half) / 2**bits) is floor(p / 2**bits) plus the first bit that is dropped.
-    wide_v   := resize(product, 82);
-    result_v := wide_v(bits + 31 downto bits);
+    result_v := shift_floored(product, bits);
     if product(bits - 1) = '1' then
       result_v := result_v + 1;
     end if;
     return result_v;
   end function shift_rounded;
+
+  function shift_floored (product : signed(49 downto 0); bits : positive) return signed is
+    variable wide_v : signed(81 downto 0);
+  begin
+    wide_v := resize(product, 82);
+    return wide_v(bits + 31 downto bits);
+  end function shift_floored;
+
+  function hk_sum (a, b : signed(31 downto 0); carry : std_logic) return signed is
+    variable sum_v : signed(32 downto 0);
+  begin
+    -- A one and the carry below the words, so that it is one sum of two.
+    sum_v := (a & '1') + (b & carry);
+    return sum_v(32 downto 1);
+  end function hk_sum;
+
+  function hk_index_bits (entries : positive) return positive is
+    variable bits_v : positive;
+  begin
+    bits_v := 1;
+    while 2 ** bits_v < entries loop
+      bits_v := bits_v + 1;
+    end loop;
+    return bits_v;
+  end function hk_index_bits;
 
 end package body hk_common_pkg;
