@@ -84,13 +84,13 @@ def test_wrong_arithmetic_is_refuted(folder: Path, tmp_path: Path, good: str, ba
 
 def test_one_channel_keeps_the_handshake(folder: Path, tmp_path: Path) -> None:
     """Every parameter in the design; the bound is the latency itself."""
-    assert latency(folder, 53, tmp_path / "a").proved
-    assert not latency(folder, 52, tmp_path / "b").proved
+    assert latency(folder, 55, tmp_path / "a").proved
+    assert not latency(folder, 54, tmp_path / "b").proved
 
 
 def test_several_channels_keep_the_handshake(plain: Path, tmp_path: Path) -> None:
     core = convert(plain, "hk_complementary", {"CHANNELS": 4}).text
-    assert prove(core, "complementary", tmp_path, {"LATENCY": 52, "CHANNEL": 2, "IDLE": 5}).proved
+    assert prove(core, "complementary", tmp_path, {"LATENCY": 54, "CHANNEL": 2, "IDLE": 5}).proved
 
 
 def test_the_verdict_is_read_from_the_text() -> None:

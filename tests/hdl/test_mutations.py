@@ -56,7 +56,7 @@ def _vectors(folder: Path, check: str, built: FilterDesign) -> None:
 
 def _handshake(folder: Path, work: Path) -> None:
     core = convert(folder, "hk_complementary").text
-    assert prove(core, "complementary", work, {"LATENCY": 52}).proved
+    assert prove(core, "complementary", work, {"LATENCY": 54}).proved
 
 
 def _functions(folder: Path, work: Path) -> None:
