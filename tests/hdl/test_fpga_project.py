@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -73,14 +74,21 @@ def test_the_stated_clocks_are_those_of_the_core(
 
 def test_the_makefile_leads_to_a_bitstream(tmp_path: Path, ghdl_installed: None) -> None:
     """The one test of the whole open flow; it takes about a minute."""
-    missing = [tool for tool in ("make", "yosys", *YOWASP) if shutil.which(tool) is None]
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    tools = ("make", "yosys", *YOWASP)
+    missing = [tool for tool in tools if shutil.which(tool, path=path) is None]
     if missing:
         pytest.skip(f"not installed: {', '.join(missing)}")
     options = FpgaOptions(clock_hz=50_000_000, top_name="tilt_board")
     write(render_target(design(), TARGETS["ecp5"], options), tmp_path)
     command = ["make", f"NEXTPNR={YOWASP[0]}", f"ECPPACK={YOWASP[1]}"]
     done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, check=False, env=dict(os.environ)
+        command,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PATH": path},
     )
     assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
     speeds = re.findall(r"Max frequency for clock '\S*clk': ([\d.]+) MHz", done.stderr)
