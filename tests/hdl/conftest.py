@@ -1,9 +1,21 @@
+from collections.abc import Iterator
+
 import pytest
+from cocotb_run import QUICK
 from hdl_cases import Core, build_core
 
+from hostkit.emulation import ghdl
 from hostkit.emulation.tools import require
 from hostkit.errors import ToolMissingError
 from hostkit.records import FilterDesign
+
+
+@pytest.fixture(scope="package", autouse=True)
+def compiled_quickly() -> Iterator[None]:
+    """Compile cores as benches are: they run for a second."""
+    usual, ghdl.OPTIMISE = ghdl.OPTIMISE, QUICK
+    yield
+    ghdl.OPTIMISE = usual
 
 
 @pytest.fixture(scope="session")
