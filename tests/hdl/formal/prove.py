@@ -13,7 +13,7 @@ from pathlib import Path
 FOLDER = Path(__file__).parent
 CHECKER = FOLDER / "stream_checker.v"
 TIMEOUT_S = 300.0
-INDUCTION = "orpos; bmc3 -F 4; ind -F 3"
+INDUCTION = "orpos; bmc3 -F 3; ind -F 2"
 """First that the properties hold in so many clocks, which an induction of one less begins with."""
 
 TO_AIGER = """
