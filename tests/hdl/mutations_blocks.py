@@ -1,6 +1,6 @@
 """Deliberate faults of the blocks around the filter: sensor, link, registers, polar core, whole."""
 
-from mutation import Mutation, table
+from mutation import table
 
 SENSOR = (
     *table(
@@ -136,7 +136,7 @@ PIPELINES = (
     *table(
         "queue",
         "hk_result_queue.vhd",
-        ("one more than it holds", "words_c - 3", "words_c - 2"),
+        ("one more than it holds", "words_c - 3", "words_c - 1"),
         (
             "result goes on while it waits",
             "(out_valid_r = '0' or out_ready = '1')",
