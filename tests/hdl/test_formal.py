@@ -110,7 +110,7 @@ def test_a_block_around_the_filter_keeps_its_promises(
         ("axi4lite", {"READ": 4}, 8),
         ("axi4lite", {"WRITE": 5}, 8),
         ("wishbone", {"BOUND": 2}, 6),
-        ("queue", {"PLACES": 6}, None),
+        ("queue", {"MOST": 5}, None),
     ],
 )
 def test_a_bound_that_is_too_tight_is_refuted(

@@ -35,5 +35,7 @@ CASES = {
     ),
     "axi4lite": Case(entity="hk_axi4lite", bounds={"READ": 5, "WRITE": 6}),
     "wishbone": Case(entity="hk_wishbone", bounds={"BOUND": 3}),
-    "queue": Case(entity="hk_result_queue", generics={"BITS": 2, "ADDRESS_BITS": 3}),
+    "queue": Case(
+        entity="hk_result_queue", generics={"BITS": 2, "ADDRESS_BITS": 3}, bounds={"MOST": 6}
+    ),
 }

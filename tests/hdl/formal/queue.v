@@ -1,5 +1,5 @@
 // A pipeline in front takes something only while there is room and gives it after any time.
-module properties #(parameter PLACES = 8) (
+module properties #(parameter MOST = 0) (
   input clk, any_rst, any_taken, any_valid, any_mark, out_ready, input [1:0] in_data
 );
   reg begun = 0;
@@ -43,7 +43,7 @@ module properties #(parameter PLACES = 8) (
   end
 
   always @* if (begun) begin
-    assert (inside + queued < PLACES);
+    assert (inside + queued <= MOST);
     assert (!out_valid || queued != 0);
     assert (busy == (inside + queued != 0));
     assert (!(marked && handed && ahead == 0) || out_data == wanted);
