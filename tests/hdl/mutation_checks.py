@@ -10,7 +10,7 @@ from cocotb_run import run_bench
 from designs import design
 from formal.bounds import CASES
 from formal.prove import Verdict, prove
-from sensor_run import SOURCES, STANDARD, run_counters, sensor_rows, simulate
+from sensor_run import SOURCES, STANDARD, sensor_rows, simulate
 from test_sensor_driver import ROWS, check_samples, played
 
 from hostkit.emulation.fpga_system import timing_of
@@ -116,12 +116,6 @@ def sensor(folder: Path, work: Path) -> None:
     assert run.lost_samples > 0
 
 
-def counters(folder: Path, work: Path) -> None:
-    """Counters at their end."""
-    work.mkdir()
-    assert run_counters(work, folder / "hk_event_counters.vhd") == ""
-
-
 def system(folder: Path, work: Path) -> None:
     """Play eight samples over a link that is too slow for them, then listen to heartbeats."""
     build_system(folder)
@@ -162,6 +156,5 @@ CHECKS: dict[str, Callable[[Path, Path], None]] = {
     "registers": registers,
     "polar": polar,
     "sensor": sensor,
-    "counters": counters,
     "system": system,
 }

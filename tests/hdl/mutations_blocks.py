@@ -45,11 +45,6 @@ SENSOR = (
         ),
     ),
     *table(
-        "counters",
-        "hk_event_counters.vhd",
-        ("counter wraps", "number or not sum(16)", "'1'"),
-    ),
-    *table(
         "bus master",
         "hk_i2c_master.vhd",
         ("reply not waited for", "if reply_ready = '1' then", "if true then"),
@@ -101,11 +96,6 @@ REGISTERS = (
             "bad_r or (write and not accepted)",
             "bad_r",
         ),
-        (
-            "time of two moments",
-            "if read = '1' and index = time_low_word_c then",
-            "if read = '1' then",
-        ),
     ),
     *table(
         "axi4lite",
@@ -156,7 +146,6 @@ PIPELINES = (
             "shrinks_c(to_integer(unsigned(late_turn)))",
             "shrinks_c(to_integer(turn))",
         ),
-        ("arc sine looks behind", "behind_r <= '0';", "behind_r <= late(33);"),
     ),
     *table(
         "pipelined",

@@ -15,6 +15,7 @@ from mutation import Mutation
 from mutation_checks import BENCHES, CHECKS, bench, proof
 from mutation_checks import DESIGNS as OF_BLOCKS
 from mutations import MUTATIONS
+from test_mavlink_tx import GCS
 
 from hostkit.design_file import digest
 from hostkit.emulation.tools import require
@@ -81,7 +82,7 @@ def _bench(folder: Path, work: Path, check: str, built: FilterDesign) -> None:
         shutil.copy(BENCHES / "uart_pair.vhd", folder)
         bench(folder, "uart_pair", "uart_bench", work, UART, text)
     elif check == "mavlink":
-        environment = {"HIDDEN_AXES": "", "DIGEST": digest(built)}
+        environment = {"HIDDEN_AXES": "", "DIGEST": digest(built), "IDENTITY": GCS}
         bench(folder, "hk_mavlink_tx", "mavlink_bench", work, {}, environment)
     else:
         clock = {"CLOCK_HZ": 1_843_200}
