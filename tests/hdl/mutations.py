@@ -1,31 +1,13 @@
 """Deliberate faults of the RTL: each must be caught by the check that it names."""
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Mutation:
-    """A fault: in a source, the text `good` (there once) becomes `bad`."""
-
-    name: str
-    check: str
-    source: str
-    good: str
-    bad: str
-
-
-def _table(check: str, source: str, *rows: tuple[str, str, str]) -> tuple[Mutation, ...]:
-    return tuple(
-        Mutation(name=name, check=check, source=source, good=good, bad=bad)
-        for name, good, bad in rows
-    )
-
+from mutation import table
+from mutations_blocks import LINK, PIPELINES, REGISTERS, SENSOR, SYSTEM
 
 CORE = "hk_complementary_iterative.vhd"
 ARCTAN = "hk_arctan.vhd"
 
 MUTATIONS = (
-    *_table(
+    *table(
         "plain",
         CORE,
         (
@@ -65,13 +47,13 @@ MUTATIONS = (
             "design_digest(23 downto 0)  <= design_digest_c(47 downto 24)",
         ),
     ),
-    *_table(
+    *table(
         "plain",
         "hk_common_pkg.vhd",
         ("size of -1", "size_v := -count;", "size_v := not count;"),
         ("sum without carry", "(b & carry)", "(b & '0')"),
     ),
-    *_table(
+    *table(
         "plain",
         "hk_complementary_pkg.vhd",
         (
@@ -80,12 +62,12 @@ MUTATIONS = (
             "unsigned(count(14 downto 0)) = 0",
         ),
     ),
-    *_table(
+    *table(
         "plain",
         "hk_multiplier.vhd",
         ("stale product", "if enable = '1' then", "if enable = '0' then"),
     ),
-    *_table(
+    *table(
         "measured",
         ARCTAN,
         ("no zero rule", "nothing_r <= '1'", "nothing_r <= '0'"),
@@ -104,14 +86,14 @@ MUTATIONS = (
         ("length not corrected", 'along_r + (unsigned(product(30 downto 16)) & "000")', "along_r"),
         ("second angle of the first length", "behind_r    <= '0';", "behind_r    <= x_negative;"),
     ),
-    *_table(
+    *table(
         "measured",
         "hk_design_pkg.vhd",
         ("slope", "to_signed(41719, 18)", "to_signed(41718, 18)"),
         ("an angle", " 531488619", " 531488618"),
         ("a stretch", " 105699", " 105698"),
     ),
-    *_table(
+    *table(
         "options",
         CORE,
         (
@@ -132,22 +114,22 @@ MUTATIONS = (
         ),
         ("learns while restarting", "if restarted_r = '1' then", "if false then"),
     ),
-    *_table(
+    *table(
         "functions",
         "hk_complementary_pkg.vhd",
         ("bias unlimited above", "return bias_limit_c", "return bias"),
         ("bias unlimited below", "return -bias_limit_c", "return bias"),
     ),
-    *_table(
+    *table(
         "arcsin",
         "hk_root.vhd",
         ("root not floored", "if rest_v >= trial_v then", "if rest_v > trial_v then"),
         ("root a bit short", "if bits_v = 0 then", "if bits_v = 1 then"),
     ),
-    *_table(
+    *table(
         "arcsin", "hk_complementary_pkg.vhd", ("no clamp", "count > gravity_count_c or", "false or")
     ),
-    *_table(
+    *table(
         "channels",
         CORE,
         ("channel lost", "channel_r    <= in_channel", "channel_r    <= (others => '0')"),
@@ -168,7 +150,7 @@ MUTATIONS = (
             "if channel_r = 2 then",
         ),
     ),
-    *_table(
+    *table(
         "handshake",
         CORE,
         (
@@ -183,13 +165,13 @@ MUTATIONS = (
             "out_valid   <= out_ready when state_r = finished else '0'",
         ),
     ),
-    *_table(
+    *table(
         "uart",
         "hk_uart_tx.vhd",
         ("no start bit", "bits_r <= '1' & in_data & '0'", "bits_r <= '1' & in_data & '1'"),
         ("highest bit first", "tx_r   <= bits_r(0);", "tx_r   <= bits_r(1);"),
     ),
-    *_table(
+    *table(
         "uart",
         "hk_uart_rx.vhd",
         ("no vote", "vote   <= (recent_r(1) and", "vote   <= level or (recent_r(1) and"),
@@ -200,7 +182,7 @@ MUTATIONS = (
         ),
         ("byte overwritten", "elsif valid_r = '1' and out_ready = '0' then", "elsif false then"),
     ),
-    *_table(
+    *table(
         "mavlink",
         "hk_mavlink_tx.vhd",
         ("checksum", "crc_r(10)  <= crc_r(11) xor feedback_v", "crc_r(10)  <= crc_r(11)"),
@@ -212,9 +194,14 @@ MUTATIONS = (
             "(sample_valid = '0')",
         ),
     ),
-    *_table(
+    *table(
         "stopwatch",
         "hk_ticks.vhd",
         ("time drifts", "phase_r <= phase_r + step_c", "phase_r <= phase_r + step_c + 1"),
     ),
+    *SENSOR,
+    *LINK,
+    *REGISTERS,
+    *PIPELINES,
+    *SYSTEM,
 )

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 from designs import all_parameters, design
+from formal.bounds import CASES, COMMAND_CLOCKS
 from formal.prove import FOLDER, Verdict, prove, read_verdict
 from gate_cases import generate
+from mutation_checks import proof, verdict_of
 
 from hostkit.emulation.tools import require
 from hostkit.errors import ToolMissingError
@@ -93,8 +95,38 @@ def test_several_channels_keep_the_handshake(plain: Path, tmp_path: Path) -> Non
     assert prove(core, "complementary", tmp_path, {"LATENCY": 54, "CHANNEL": 2, "IDLE": 5}).proved
 
 
+@pytest.mark.parametrize("block", sorted(CASES))
+def test_a_block_around_the_filter_keeps_its_promises(
+    plain: Path, tmp_path: Path, block: str
+) -> None:
+    proof(plain, tmp_path, block)
+
+
+@pytest.mark.parametrize(
+    ("block", "tight", "frame"),
+    [
+        ("transmitter", {"BUSY": 39}, 45),
+        ("bus master", {"BOUND": COMMAND_CLOCKS - 1}, 2),
+        ("axi4lite", {"READ": 4}, 8),
+        ("axi4lite", {"WRITE": 5}, 8),
+        ("wishbone", {"BOUND": 2}, 6),
+        ("queue", {"MOST": 5}, None),
+    ],
+)
+def test_a_bound_that_is_too_tight_is_refuted(
+    plain: Path, tmp_path: Path, block: str, tight: dict[str, int], frame: int | None
+) -> None:
+    verdict = verdict_of(plain, tmp_path, block, tight)
+    assert not verdict.proved
+    assert verdict.frame == frame or frame is None
+
+
 def test_the_verdict_is_read_from_the_text() -> None:
     assert read_verdict("Property proved.  Time = 2.5 sec").proved
     assert read_verdict("Output 3 of miter was asserted in frame 7.").frame == 7
-    with pytest.raises(AssertionError):
-        read_verdict("Property UNDECIDED.")
+    held = "No output asserted in 3 frames. "
+    assert read_verdict(held + "Networks are equivalent.").proved
+    assert read_verdict(held + "Networks are UNDECIDED.") == Verdict(proved=False)
+    for said in ("Property UNDECIDED.", "Networks are equivalent.", held):
+        with pytest.raises(AssertionError):
+            read_verdict(said)

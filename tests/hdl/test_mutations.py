@@ -7,22 +7,24 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from cocotb_run import run_bench
 from designs import all_parameters, design
+from formal.bounds import CASES
 from formal.prove import FOLDER, prove
 from gate_cases import TOP, Configuration, assert_equal, generate, vectors
-from mutations import MUTATIONS, Mutation
+from mutation import Mutation
+from mutation_checks import BENCHES, CHECKS, bench, proof
+from mutation_checks import DESIGNS as OF_BLOCKS
+from mutations import MUTATIONS
+from test_mavlink_tx import GCS
 
 from hostkit.design_file import digest
 from hostkit.emulation.tools import require
 from hostkit.errors import EmulationError, ToolMissingError
 from hostkit.records import FilterDesign
 from hostkit.synthesis import convert
-from hostkit.synthesis.convert import needed_sources
 from hostkit.synthesis.netlist import play
 
 SAMPLES = 250
-BENCHES = Path(__file__).parent / "benches"
 NARROW = {"DIFFERENCE_BITS": 8, "BLEND_BITS": 6}
 UART = {"CLOCK_HZ": 40_000_000, "BAUD": 10_000_000}
 
@@ -31,6 +33,8 @@ DESIGNS: dict[str, FilterDesign] = {
     "options": all_parameters(),
     "functions": all_parameters(),
     "arcsin": design(tilt="arcsin"),
+    "pipelined": design(tilt="arcsin"),
+    **OF_BLOCKS,
 }
 
 
@@ -45,8 +49,14 @@ def rendered(tmp_path_factory: pytest.TempPathFactory) -> Callable[[FilterDesign
 
 def _vectors(folder: Path, check: str, built: FilterDesign) -> None:
     """Play vectors with stalls on the converted core, the samples of every channel in turn."""
-    channels = 5 if check == "channels" else 1
-    case = Configuration(name=check, design=built, channels=channels, budget=(0, 0, 0, 0))
+    channels = {"channels": 5, "pipelined": 3}.get(check, 1)
+    case = Configuration(
+        name=check,
+        design=built,
+        channels=channels,
+        pipelined=check == "pipelined",
+        budget=(0, 0, 0, 0),
+    )
     played = vectors(case, SAMPLES)
     text = convert(folder, TOP, case.generics).text
     run = play(text, played, channels=channels, stalls=True, mapped=False)
@@ -70,32 +80,13 @@ def _bench(folder: Path, work: Path, check: str, built: FilterDesign) -> None:
     text = {name: str(value) for name, value in UART.items()}
     if check == "uart":
         shutil.copy(BENCHES / "uart_pair.vhd", folder)
-        _run(folder, "uart_pair", "uart_bench", work, UART, text)
+        bench(folder, "uart_pair", "uart_bench", work, UART, text)
     elif check == "mavlink":
-        environment = {"HIDDEN_AXES": "", "DIGEST": digest(built)}
-        _run(folder, "hk_mavlink_tx", "mavlink_bench", work, {}, environment)
+        environment = {"HIDDEN_AXES": "", "DIGEST": digest(built), "IDENTITY": GCS}
+        bench(folder, "hk_mavlink_tx", "mavlink_bench", work, {}, environment)
     else:
         clock = {"CLOCK_HZ": 1_843_200}
-        _run(folder, "hk_stopwatch", "stopwatch_bench", work, clock, {"CLOCK_HZ": "1843200"})
-
-
-def _run(
-    folder: Path,
-    entity: str,
-    bench: str,
-    work: Path,
-    generics: dict[str, int],
-    environment: dict[str, str],
-) -> None:
-    """Run a bench on what an entity needs, and nothing else of the folder."""
-    few = work / "sources"
-    few.mkdir(parents=True)
-    for name in needed_sources(folder, entity):
-        shutil.copy(folder / name, few)
-    try:
-        run_bench(few, entity, bench, build=work, parameters=generics, environment=environment)
-    except SystemExit as error:
-        raise AssertionError(f"{bench} fails") from error
+        bench(folder, "hk_stopwatch", "stopwatch_bench", work, clock, {"CLOCK_HZ": "1843200"})
 
 
 def _check(folder: Path, work: Path, check: str) -> None:
@@ -106,6 +97,10 @@ def _check(folder: Path, work: Path, check: str) -> None:
         _functions(folder, work)
     elif check in {"uart", "mavlink", "stopwatch"}:
         _bench(folder, work, check, built)
+    elif check in CASES:
+        proof(folder, work, check)
+    elif check in CHECKS:
+        CHECKS[check](folder, work)
     else:
         _vectors(folder, check, built)
 
@@ -128,7 +123,7 @@ def test_a_fault_is_caught(
         _check(folder, tmp_path / "work", mutation.check)
 
 
-@pytest.mark.parametrize("check", sorted({m.check for m in MUTATIONS} - {"handshake"}))
+@pytest.mark.parametrize("check", sorted({m.check for m in MUTATIONS} - {"handshake", *CASES}))
 def test_without_a_fault_nothing_is_found(
     check: str, rendered: Callable[[FilterDesign], Path], tmp_path: Path
 ) -> None:
@@ -140,4 +135,4 @@ def test_without_a_fault_nothing_is_found(
 def test_there_are_enough_faults() -> None:
     names = Counter((m.check, m.name) for m in MUTATIONS)
     assert max(names.values()) == 1
-    assert len(MUTATIONS) >= 30
+    assert len(MUTATIONS) >= 90
