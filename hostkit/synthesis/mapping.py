@@ -37,9 +37,22 @@ class Family:
     block_ram: str
 
 
+# xilinx_dsp of Yosys 0.23 takes a register with the product into the DSP48A even if it holds the
+# sign twice, and leaves the second sign without a driver: wreduce removes such bits before, and
+# check finds those that are left.
+_XC3SDA = """
+    synth_xilinx -family xc3sda -flatten -top {top} -run begin:map_dsp
+    wreduce
+    opt_clean
+    synth_xilinx -family xc3sda -flatten -top {top} -run map_dsp:coarse
+    clean
+    check -assert
+    synth_xilinx -family xc3sda -flatten -top {top} -run coarse:
+"""
+
 FAMILIES = {
     "xc3sda": Family(
-        command="synth_xilinx -family xc3sda -flatten -top {top}",
+        command=_XC3SDA,
         latch="t:LD*",
         lut=r"LUT\d|RAM\d+X\d\w*|SRL\w+",
         flip_flop=r"FD\w+",
@@ -111,7 +124,7 @@ def map_netlist(converted: Converted, family: str, *, dsp: int | None = None) ->
     chosen = FAMILIES[family]
     script = [
         "read_verilog converted.v",
-        chosen.command.format(top=converted.entity),
+        *chosen.command.format(top=converted.entity).strip().splitlines(),
         "tee -q -o cells.txt stat",
         f"select -assert-none {chosen.latch}",
         *([] if dsp is None else [f"select -assert-count {dsp} t:{chosen.dsp}"]),
