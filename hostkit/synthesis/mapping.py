@@ -38,16 +38,12 @@ class Family:
 
 
 # xilinx_dsp of Yosys 0.23 takes a register with the product into the DSP48A even if it holds the
-# sign twice, and leaves the second sign without a driver: wreduce removes such bits before, and
-# check finds those that are left.
+# sign twice, and leaves the second sign without a driver: wreduce removes such bits before.
 _XC3SDA = """
     synth_xilinx -family xc3sda -flatten -top {top} -run begin:map_dsp
     wreduce
     opt_clean
-    synth_xilinx -family xc3sda -flatten -top {top} -run map_dsp:coarse
-    clean
-    check -assert
-    synth_xilinx -family xc3sda -flatten -top {top} -run coarse:
+    synth_xilinx -family xc3sda -flatten -top {top} -run map_dsp:
 """
 
 FAMILIES = {
