@@ -11,6 +11,7 @@ from hostkit.synthesis.convert import Converted
 from hostkit.synthesis.process import run_tool
 
 TIMEOUT_S = 600.0
+ECP5_PRODUCT = Path(__file__).with_name("hk_product_ecp5.v")
 _ROW = re.compile(r"^ +(?:(\S+) +(\d+)|(\d+) +(\S+))$", re.MULTILINE)
 _VERSION = re.compile(r"Yosys (\d+\.\d+)")
 
@@ -118,8 +119,10 @@ def map_netlist(converted: Converted, family: str, *, dsp: int | None = None) ->
     """
     require("yosys")
     chosen = FAMILIES[family]
+    blocks = family == "ecp5" and re.search(r"^module hk_product$", converted.text, re.MULTILINE)
     script = [
         "read_verilog converted.v",
+        *([f"read_verilog -overwrite {ECP5_PRODUCT}"] if blocks else []),
         *chosen.command.format(top=converted.entity).strip().splitlines(),
         "tee -q -o cells.txt stat",
         f"select -assert-none {chosen.latch}",
