@@ -11,6 +11,7 @@ from hostkit.synthesis.convert import Converted
 from hostkit.synthesis.process import run_tool
 
 TIMEOUT_S = 600.0
+ECP5_PRODUCT = Path(__file__).with_name("hk_product_ecp5.v")
 _ROW = re.compile(r"^ +(?:(\S+) +(\d+)|(\d+) +(\S+))$", re.MULTILINE)
 _VERSION = re.compile(r"Yosys (\d+\.\d+)")
 
@@ -37,9 +38,18 @@ class Family:
     block_ram: str
 
 
+# xilinx_dsp of Yosys 0.23 takes a register with the product into the DSP48A even if it holds the
+# sign twice, and leaves the second sign without a driver: wreduce removes such bits before.
+_XC3SDA = """
+    synth_xilinx -family xc3sda -flatten -top {top} -run begin:map_dsp
+    wreduce
+    opt_clean
+    synth_xilinx -family xc3sda -flatten -top {top} -run map_dsp:
+"""
+
 FAMILIES = {
     "xc3sda": Family(
-        command="synth_xilinx -family xc3sda -flatten -top {top}",
+        command=_XC3SDA,
         latch="t:LD*",
         lut=r"LUT\d|RAM\d+X\d\w*|SRL\w+",
         flip_flop=r"FD\w+",
@@ -109,9 +119,11 @@ def map_netlist(converted: Converted, family: str, *, dsp: int | None = None) ->
     """
     require("yosys")
     chosen = FAMILIES[family]
+    blocks = family == "ecp5" and re.search(r"^module hk_product$", converted.text, re.MULTILINE)
     script = [
         "read_verilog converted.v",
-        chosen.command.format(top=converted.entity),
+        *([f"read_verilog -overwrite {ECP5_PRODUCT}"] if blocks else []),
+        *chosen.command.format(top=converted.entity).strip().splitlines(),
         "tee -q -o cells.txt stat",
         f"select -assert-none {chosen.latch}",
         *([] if dsp is None else [f"select -assert-count {dsp} t:{chosen.dsp}"]),

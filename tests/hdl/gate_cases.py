@@ -45,6 +45,13 @@ CONFIGURATIONS = (
     Configuration(
         name="two axes, 64 channels", design=design(), channels=64, budget=(1600, 450, 2, 2)
     ),
+    Configuration(
+        name="pipelined",
+        design=design(axes="roll"),
+        channels=4,
+        pipelined=True,
+        budget=(2500, 3200, 4, 4),
+    ),
 )
 
 

@@ -172,6 +172,7 @@ def test_a_resting_consumer_loses_nothing(tmp_path: Path) -> None:
     ("source", "good", "bad", "channels"),
     [
         ("hk_pipelined_pkg.vhd", "return loop_clocks + 1", "return loop_clocks", 1),
+        ("hk_complementary_entry.vhd", "second_v := '1'", "null", 1),
         ("hk_complementary_loop.vhd", "<= not clear", "<= '1'", ENOUGH),
         ("hk_arctan_pipelined.vhd", "if rest_r(summed_c)(32) = '1'", "if false", ENOUGH),
         ("hk_root_pipelined.vhd", '& "11"', '& "01"', ENOUGH),

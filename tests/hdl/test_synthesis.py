@@ -1,6 +1,7 @@
 """The core converted, mapped to the Spartan-3A DSP and the ECP5, counted, and run as gates."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from gate_cases import CONFIGURATIONS, TOP, Configuration, assert_equal, generat
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, ToolMissingError
 from hostkit.synthesis import Converted, Mapped, convert, map_netlist
+from hostkit.synthesis.mapping import FAMILIES
 from hostkit.synthesis.netlist import play
 from hostkit.synthesis.place import place
 from hostkit.synthesis.repair import check, repair
@@ -88,6 +90,44 @@ def test_without_the_repair_the_multiplier_is_too_large(tmp_path: Path) -> None:
     with pytest.raises(BuildError, match="Assertion failed"):
         map_netlist(raw, "xc3sda", dsp=2)
     assert map_netlist(convert(folder, "hk_multiplier"), "xc3sda", dsp=2).resources.dsp == 2
+
+
+def test_a_sign_held_twice_is_not_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = generate(CONFIGURATIONS[0].design, tmp_path)
+    (folder / "turner.vhd").write_text(SIGN_TWICE, encoding="ascii")
+    core = convert(folder, "turner")
+    family = FAMILIES["xc3sda"]
+    script, final = family.command.rsplit("-run map_dsp:", 1)
+    script += "-run map_dsp:coarse\nclean\ncheck -assert" + final
+    monkeypatch.setitem(FAMILIES, "xc3sda", replace(family, command=script))
+    assert map_netlist(core, "xc3sda").entity == "turner"
+    unmended = script.replace("wreduce", "")
+    monkeypatch.setitem(FAMILIES, "xc3sda", replace(family, command=unmended))
+    with pytest.raises(BuildError, match="check -assert"):
+        map_netlist(core, "xc3sda")
+
+
+SIGN_TWICE = """library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+entity turner is
+  port (clk : in std_logic; rate : in signed(16 downto 0); turn : out signed(35 downto 0));
+end entity turner;
+
+architecture rtl of turner is
+  signal factor : signed(17 downto 0);
+begin
+  factor <= resize(rate, 18);
+  product : entity work.hk_product
+    port map (
+      clk         => clk,
+      factor      => factor,
+      coefficient => to_signed(16#1c71c#, 18),
+      product     => turn
+    );
+end architecture rtl;
+"""
 
 
 def test_a_case_leaves_latches_and_is_refused(tmp_path: Path) -> None:
