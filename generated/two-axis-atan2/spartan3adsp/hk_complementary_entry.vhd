@@ -43,26 +43,62 @@ architecture rtl of hk_complementary_entry is
   signal gone_channel_r : channels_t;
 
   signal ready   : std_logic;
-  signal free    : std_logic;
+  signal free_r  : std_logic;  -- the first sample may go on
   signal goes_on : std_logic;
+
+  -- Whether one of this channel will have gone on in the clocks before the next, the last one
+  -- left out.
+  function has_gone (
+    channel  : channel_t;
+    valid    : std_logic_vector(1 to CHANNEL_CLOCKS - 1);
+    channels : channels_t
+  ) return std_logic is
+    variable gone_v : std_logic;
+  begin
+    gone_v := '0';
+    for clock in 1 to CHANNEL_CLOCKS - 2 loop
+      if valid(clock) = '1' and channels(clock) = channel then
+        gone_v := '1';
+      end if;
+    end loop;
+    return gone_v;
+  end function has_gone;
 
 begin
 
   ready       <= room and not second_valid_r;
   in_ready    <= ready;
-  goes_on     <= first_valid_r and free;
+  goes_on     <= first_valid_r and free_r;
   out_valid   <= goes_on;
   out_channel <= first_channel_r;
   out_data    <= first_data_r;
 
-  interlock : process (first_channel_r, gone_valid_r, gone_channel_r)
+  -- Channels are compared a clock ahead, each place by itself: that a sample goes on enables many
+  -- registers.
+  interlock : process (clk)
+    variable first_v  : std_logic;
+    variable second_v : std_logic;
+    variable in_v     : std_logic;
   begin
-    free <= '1';
-    for clock in 1 to CHANNEL_CLOCKS - 1 loop
-      if gone_valid_r(clock) = '1' and gone_channel_r(clock) = first_channel_r then
-        free <= '0';
+    if rising_edge(clk) then
+      first_v  := has_gone(first_channel_r, gone_valid_r, gone_channel_r);
+      second_v := has_gone(second_channel_r, gone_valid_r, gone_channel_r);
+      in_v     := has_gone(in_channel, gone_valid_r, gone_channel_r);
+      if goes_on = '1' and second_channel_r = first_channel_r then
+        second_v := '1';
       end if;
-    end loop;
+      if goes_on = '1' and in_channel = first_channel_r then
+        in_v := '1';
+      end if;
+
+      if goes_on = '0' and first_valid_r = '1' then
+        free_r <= not first_v;
+      elsif second_valid_r = '1' then
+        free_r <= not second_v;
+      else
+        free_r <= not in_v;
+      end if;
+    end if;
   end process interlock;
 
   process (clk)

@@ -309,9 +309,6 @@ begin
       wait until rising_edge(clk);
       clock_v := clock_v + 1;
 
-      assert in_work_v = 0 or busy = '1'
-        report "the core has a sample and is not busy" severity failure;
-
       if out_valid = '1' then
         assert in_work_v > 0 report "the core gives a result too many" severity failure;
         if not waiting_v then
@@ -348,6 +345,9 @@ begin
       else
         assert not waiting_v report "the core takes back a result" severity failure;
       end if;
+
+      assert in_work_v = 0 or busy = '1'
+        report "the core has a sample and is not busy" severity failure;
 
       if in_valid = '1' and in_ready = '1' then
         assert PIPELINED or (in_work_v = 0 and out_valid = '0')
