@@ -16,6 +16,7 @@ from hostkit.targets import TARGETS
 
 TOP = "hk_complementary_fixed"
 SEEDS = (1, 2, 3)
+ASKED_MHZ = {False: 100.0, True: 170.0}
 CLOCKS_A_SAMPLE = {("atan2", False): 55, ("atan2", True): 1}
 """Counted in ``tests/hdl``; a pipelined core with many channels takes a sample a clock."""
 
@@ -81,7 +82,10 @@ def _speeds(root: Path) -> Table:
     for size in ((1, False), (64, True)):
         mapped = _mapped(root, "ecp5", DESIGNS[0], size)
         try:
-            found = [placed.fmax_mhz for placed in place_seeds(mapped, SEEDS)]
+            found = [
+                placed.fmax_mhz
+                for placed in place_seeds(mapped, SEEDS, target_mhz=ASKED_MHZ[size[1]])
+            ]
         except ToolMissingError:
             found = []
         clocks = CLOCKS_A_SAMPLE["atan2", size[1]]

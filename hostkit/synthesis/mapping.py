@@ -7,11 +7,12 @@ from pathlib import Path
 
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError
+from hostkit.render.environment import template_root
 from hostkit.synthesis.convert import Converted
 from hostkit.synthesis.process import run_tool
 
 TIMEOUT_S = 600.0
-ECP5_PRODUCT = Path(__file__).with_name("hk_product_ecp5.v")
+ECP5_PRODUCT = template_root("fpga") / "ecp5" / "hk_product.v"
 _ROW = re.compile(r"^ +(?:(\S+) +(\d+)|(\d+) +(\S+))$", re.MULTILINE)
 _VERSION = re.compile(r"Yosys (\d+\.\d+)")
 
@@ -122,7 +123,7 @@ def map_netlist(converted: Converted, family: str, *, dsp: int | None = None) ->
     blocks = family == "ecp5" and re.search(r"^module hk_product$", converted.text, re.MULTILINE)
     script = [
         "read_verilog converted.v",
-        *([f"read_verilog -overwrite {ECP5_PRODUCT}"] if blocks else []),
+        *([f"read_verilog -overwrite {ECP5_PRODUCT.name}"] if blocks else []),
         *chosen.command.format(top=converted.entity).strip().splitlines(),
         "tee -q -o cells.txt stat",
         f"select -assert-none {chosen.latch}",
@@ -131,6 +132,7 @@ def map_netlist(converted: Converted, family: str, *, dsp: int | None = None) ->
     ]
     with tempfile.TemporaryDirectory(prefix="hostkit-map-") as name:
         build = Path(name)
+        (build / ECP5_PRODUCT.name).write_bytes(ECP5_PRODUCT.read_bytes())
         (build / "converted.v").write_text(converted.text, encoding="utf-8")
         command = ["yosys", "-q", "-p", "; ".join(script)]
         run_tool(command, build, timeout_s=TIMEOUT_S)

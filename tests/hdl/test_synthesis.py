@@ -38,6 +38,10 @@ def _tools() -> None:
         pytest.skip(str(error))
 
 
+DEVICE_LUTS = 47744
+"""Of an XC3SD3400A."""
+
+
 @pytest.fixture(scope="module", params=CONFIGURATIONS, ids=lambda c: c.name)
 def configuration(request: pytest.FixtureRequest) -> Configuration:
     return request.param
@@ -81,6 +85,13 @@ def test_the_core_is_as_large_as_recorded(
         RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n", encoding="ascii")
     if found.yosys in record:
         assert dict(found.cells) == record[found.yosys][configuration.name]
+
+
+def test_the_whole_system_takes_four_hundredths_of_the_device(tmp_path: Path) -> None:
+    folder = generate(CONFIGURATIONS[0].design, tmp_path)
+    found = map_netlist(convert(folder, "hk_system"), "xc3sda", dsp=2).resources
+    assert found.lut <= 0.04 * DEVICE_LUTS
+    assert found.block_ram == 0
 
 
 def test_without_the_repair_the_multiplier_is_too_large(tmp_path: Path) -> None:
