@@ -17,7 +17,12 @@ from hostkit.render.options import (
 Bus = Literal["none", "axi4lite", "wishbone"]
 
 CHANNEL_LIMITS: Final = (1, 1024)
+OWN_PREFIX: Final = "hk_"
 TOP_NAME: Final = "hk_top"
+FOREIGN_NAMES: Final = frozenset(
+    {"ieee", "std", "work", "unisim", "ibufg", "bufg", "iobuf", "dcm_sp", "ehxplll"}
+)
+"""Libraries and primitives that the tops use."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,12 +80,27 @@ class FpgaOptions:
         low, high = BAUD_LIMITS
         if self.baud is not None and not low <= self.baud <= high:
             raise RenderError(f"baud = {self.baud}; it must be {low} to {high} bit/s")
-        require_identifier("top_name", self.top_name)
+        _require_free_name(self.top_name)
 
     @property
     def identity(self) -> Identity:
         """Who the device says it is."""
         return IDENTITIES[self.profile]
+
+
+def _require_free_name(top_name: str) -> None:
+    """Refuse what is no identifier, and what another unit, primitive or library is called."""
+    require_identifier("top_name", top_name)
+    name = top_name.lower()
+    if name.startswith(OWN_PREFIX) and top_name != TOP_NAME:
+        raise RenderError(
+            f"top_name = {top_name!r}; names of hostkit's own units begin with {OWN_PREFIX}: take "
+            f"another, or {TOP_NAME}"
+        )
+    if name in FOREIGN_NAMES:
+        raise RenderError(
+            f"top_name = {top_name!r} is the name of a primitive or a library; take another"
+        )
 
 
 DEFAULT_FPGA_OPTIONS: Final = FpgaOptions()

@@ -37,7 +37,7 @@ def render_folders(context: RenderContext, folders: Iterable[str]) -> list[Gener
     Raises
     ------
     RenderError
-        If a text is not ASCII with line feeds, or two sources declare one unit.
+        If a text is not ASCII with line feeds.
     """
     root = template_root(context.target.kind)
     env = environment(root)
@@ -53,7 +53,6 @@ def render_folders(context: RenderContext, folders: Iterable[str]) -> list[Gener
         {file.path: file.content for file in files},
         benches,
         [template.output for template in others],
-        context.fpga.top_name,
     )
     return files + [_rendered(env, context, template, names) for template in others]
 

@@ -61,6 +61,9 @@ BAD = [
     (lambda: FpgaOptions(top_name="a__b"), r"'a__b' is no identifier"),
     (lambda: FpgaOptions(top_name="Signal"), r"'Signal' is a reserved word of VHDL"),
     (lambda: FpgaOptions(top_name="logic"), r"'logic' is a reserved word of SystemVerilog"),
+    (lambda: FpgaOptions(top_name="HK_System"), r"'HK_System'; names .* begin with hk_"),
+    (lambda: FpgaOptions(top_name="hk_system"), r"'hk_system'; names .* begin with hk_"),
+    (lambda: FpgaOptions(top_name="DCM_SP"), r"'DCM_SP' is the name of a primitive"),
 ]
 
 
@@ -152,11 +155,6 @@ def test_neither_kind_of_target_takes_the_options_of_the_other() -> None:
         generate(design(), ECP5, FirmwareOptions(baud=9600, message_rates=(message,)))
     with pytest.raises(RenderError, match=r"host is no FPGA.*: bus, channels$"):
         generate(design(), TARGETS["host"], FpgaOptions(bus="axi4lite", channels=2))
-
-
-def test_a_top_that_is_called_like_another_entity_is_refused() -> None:
-    with pytest.raises(RenderError, match=r"'HK_System' is already the name .* hk_system\.vhd"):
-        generate(design(), SPARTAN, FpgaOptions(top_name="HK_System"))
 
 
 def test_a_rate_gain_that_fits_no_coefficient_is_refused_with_numbers() -> None:
