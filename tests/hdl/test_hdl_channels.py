@@ -76,6 +76,21 @@ def test_every_channel_is_a_filter_of_its_own(
     assert len(set(run.latency_cycles)) == 1
 
 
+@pytest.mark.parametrize("channels", [900, 1024])
+def test_900_channels_at_1_khz_take_less_than_50_mhz(
+    channels: int, tmp_path: Path, ghdl_installed: None
+) -> None:
+    core = build_core(design(rate_hz=1000.0), tmp_path)
+    accel, gyro = np.random.default_rng(channels).integers(-32768, 32768, (2, 2 * channels, 3))
+    channel = np.tile(np.arange(channels), 2)
+    run = ghdl.simulate(core.folder, accel, gyro, channel=channel, channels=channels)
+    np.testing.assert_array_equal(run.channel, channel)
+    np.testing.assert_array_equal(answer(run), expected_of(core, channel, accel, gyro))
+    np.testing.assert_array_equal(run.restarted, np.arange(2 * channels) < channels)
+    clocks_a_sample = np.diff(run.taken_cycle).max()
+    assert 900 * 1000.0 * clocks_a_sample <= 50e6
+
+
 def test_a_reset_forgets_every_channel(channel_core: Core) -> None:
     accel, gyro = (counts[:6] for counts in count_vectors())
     channel = np.arange(6) % 3
