@@ -31,6 +31,7 @@ TARGET_TOOLS = {
     "stm32f103": ("make", "arm-none-eabi-gcc", "gcc", "unicorn"),
     "linux": ("gcc", "make"),
     "spartan3adsp": ("ghdl",),
+    "ecp5": ("ghdl",),
 }
 
 

@@ -88,7 +88,7 @@ TOOLS = (
     ),
     Tool(
         name="ghdl",
-        purpose="the spartan3adsp target",
+        purpose="the spartan3adsp and ecp5 targets",
         hint=_apt("ghdl"),
         command=("ghdl", "--version"),
     ),
