@@ -79,7 +79,7 @@ def _sizes(root: Path) -> Table:
 
 def _speeds(root: Path) -> Table:
     rows = []
-    for size in ((1, False), (64, True)):
+    for size in ((1, False), (16, True), (64, True)):
         mapped = _mapped(root, "ecp5", DESIGNS[0], size)
         try:
             found = [

