@@ -128,7 +128,7 @@ def require(*names: str) -> None:
         present = shutil.which(tool.command[0]) if tool.command else _package_version(tool)
         if not present:
             raise ToolMissingError(
-                f"{tool.name} is not installed; {tool.purpose} needs it: `make setup` in a "
+                f"{tool.name} is not installed; it is for {tool.purpose}: `make setup` in a "
                 f"checkout, or {tool.hint}"
             )
 

@@ -135,4 +135,4 @@ def test_without_a_fault_nothing_is_found(
 def test_there_are_enough_faults() -> None:
     names = Counter((m.check, m.name) for m in MUTATIONS)
     assert max(names.values()) == 1
-    assert len(MUTATIONS) >= 80
+    assert len(MUTATIONS) >= 88
