@@ -164,22 +164,66 @@ class AngleTrace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LinkStatistics:
-    """What a link delivered and what it lost."""
+class ResidualStatistics:
+    """The residual device minus float model of one axis.
 
-    frames: int = 0
-    lost_frames: int = 0
-    bad_bytes: int = 0
-    bad: int = 0
-    unknown: int = 0
+    Attributes
+    ----------
+    p50_rad, p95_rad, p99_rad
+        Percentiles of its size.
+    lag_s
+        How far the device is behind the model, by cross-correlation of the angles; None where
+        there is too little motion to tell.
+    drift_rad_s
+        Slope of the residual over time; None while there is less than a minute.
+    """
+
+    axis: Axis
+    samples: int
+    rms_rad: float
+    max_rad: float
+    mean_rad: float
+    p50_rad: float
+    p95_rad: float
+    p99_rad: float
+    lag_s: float | None = None
+    drift_rad_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RetunedParameter:
+    """A parameter that the device uses with another value than its design has."""
+
+    name: str
+    design_value: float
+    device_value: float
+    unit: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValidationReport:
     """A device trace held against the integer and the float model.
 
-    `mismatches` counts samples that differ from the integer model; `rms_rad` and `max_rad` are the
-    residual device minus float model. `reasons` says why the verdict is not ``pass``.
+    Attributes
+    ----------
+    samples, checked
+        Samples that came, and steps of them that could be computed again.
+    lost, late, repeated
+        Samples that never came, came behind a later one, or came twice.
+    mismatches
+        Checked samples that differ from the integer model; of a filter in float, those further
+        from the float model than its tolerance.
+    unjudged
+        Samples that no model could follow: every so many-th only is sent, or the parameters in
+        use were not known.
+    rms_rad, max_rad
+        Residual device minus float model, over all axes.
+    residual
+        The same in detail, an entry for each axis of the design; empty without a residual.
+    retuned
+        Parameters in use that are not the design's, set over the link, calibrated or stored.
+    reasons
+        Why the verdict is not ``pass``.
     """
 
     samples: int
@@ -190,4 +234,9 @@ class ValidationReport:
     max_rad: float | None
     digest_ok: bool
     verdict: Literal["pass", "fail", "refused"]
+    late: int = 0
+    repeated: int = 0
+    unjudged: int = 0
+    residual: tuple[ResidualStatistics, ...] = field(default=())
+    retuned: tuple[RetunedParameter, ...] = field(default=())
     reasons: tuple[str, ...] = field(default=())

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from hostkit.dialect import python_module
-from hostkit.records import AngleTrace, Axis, LinkStatistics
+from hostkit.link.statistics import LinkStatistics
+from hostkit.records import AngleTrace, Axis
 
 Source = tuple[int, int]
 """System and component id of a sender."""

@@ -4,7 +4,7 @@ import contextlib
 import errno
 import socket
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol
 
 import serial
 
@@ -13,16 +13,38 @@ from hostkit.link.tlog import read_tlog
 
 READ_BYTES = 4096
 CONNECT_TIMEOUT_S = 5.0
+WRITE_TIMEOUT_S = 0.1
+
+
+PortState = Literal["connected", "lost", "released", "ended"]
+"""A port is lost while it is waited for, released while another program may have it."""
 
 
 class Transport(Protocol):
-    """A source of bytes that always comes back."""
+    """A source of bytes that always comes back, and a way to the device.
+
+    Attributes
+    ----------
+    live
+        Whether the other end is a device, so that an end of the stream is a loss.
+    state
+        Whether it is open.
+    epoch
+        Rises by one whenever it was opened anew: counters and half frames from before are void.
+    overrun_bytes
+        Bytes that were received and dropped, because nobody took them in time.
+    """
 
     live: bool
-    """Whether the other end is a device, so that an end of the stream is a loss."""
+    state: PortState
+    epoch: int
+    overrun_bytes: int
 
     def read(self, timeout_s: float) -> bytes | None:
         """Return what came within `timeout_s`, nothing if nothing did, None at the end."""
+
+    def write(self, data: bytes) -> None:
+        """Send to the device; what cannot be sent at once is lost, and nothing is raised."""
 
     def close(self) -> None:
         """Release the port."""
@@ -60,8 +82,13 @@ class SerialTransport:
     live = True
 
     def __init__(self, port: str, baud: int) -> None:
+        self.state: PortState = "connected"
+        self.epoch = 0
+        self.overrun_bytes = 0
         try:
-            self._port = serial.Serial(port, baud, timeout=0.1, exclusive=True)
+            self._port = serial.Serial(
+                port, baud, timeout=0.1, write_timeout=WRITE_TIMEOUT_S, exclusive=True
+            )
         except (serial.SerialException, OSError, ValueError) as error:
             raise DeviceError(_explain(port, error)) from error
         self._name = port
@@ -73,8 +100,14 @@ class SerialTransport:
             first: bytes = self._port.read(1)
             rest: bytes = self._port.read(self._port.in_waiting) if first else b""
         except (serial.SerialException, OSError):
+            self.state = "lost"
             return None
         return first + rest
+
+    def write(self, data: bytes) -> None:
+        """Send to the device; what it does not take within a moment is lost."""
+        with contextlib.suppress(serial.SerialException, OSError):
+            self._port.write(data)
 
     def close(self) -> None:
         """Release the port."""
@@ -104,19 +137,36 @@ class SocketTransport:
     live = True
 
     def __init__(self, connection: socket.socket) -> None:
+        self.state: PortState = "connected"
+        self.epoch = 0
+        self.overrun_bytes = 0
         self._socket = connection
         self._stream = connection.type == socket.SOCK_STREAM
+        self._peer: tuple[object, ...] | None = None
 
     def read(self, timeout_s: float) -> bytes | None:
         """Return what came, None once the peer has closed the connection."""
         self._socket.settimeout(timeout_s)
         try:
-            received = self._socket.recv(65536)
+            received, peer = self._socket.recvfrom(65536)
         except TimeoutError:
             return b""
         except OSError:
+            received, peer = b"", None
+        if self._stream and not received:
+            self.state = "lost"
             return None
-        return None if self._stream and not received else received
+        self._peer = peer
+        return received
+
+    def write(self, data: bytes) -> None:
+        """Send to the peer; over UDP to whoever sent last."""
+        with contextlib.suppress(OSError):
+            self._socket.settimeout(WRITE_TIMEOUT_S)
+            if self._stream:
+                self._socket.sendall(data)
+            elif self._peer is not None:
+                self._socket.sendto(data, self._peer)
 
     def close(self) -> None:
         """Close the socket."""
@@ -158,6 +208,9 @@ class FileTransport:
     live = False
 
     def __init__(self, path: Path) -> None:
+        self.state: PortState = "connected"
+        self.epoch = 0
+        self.overrun_bytes = 0
         self._frames = read_tlog(path)
 
     def read(self, timeout_s: float) -> bytes | None:
@@ -167,7 +220,12 @@ class FileTransport:
             chunk += frame
             if len(chunk) >= READ_BYTES:
                 break
+        if not chunk:
+            self.state = "ended"
         return chunk or None
+
+    def write(self, data: bytes) -> None:
+        """Do nothing: a file listens to nobody."""
 
     def close(self) -> None:
         """Close the file."""

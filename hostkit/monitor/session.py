@@ -8,8 +8,9 @@ from typing import Protocol
 from hostkit.design_file import digest
 from hostkit.errors import DeviceError
 from hostkit.link.decoder import Decoder, Frame, Source, digest_of, is_retuned, trace_of
+from hostkit.link.statistics import LinkStatistics
 from hostkit.link.transport import Transport
-from hostkit.records import AXES, FilterDesign, LinkStatistics, ValidationReport
+from hostkit.records import AXES, FilterDesign, ValidationReport
 from hostkit.validation import Thresholds, Validator
 
 POLL_S = 0.1

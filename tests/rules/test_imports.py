@@ -8,6 +8,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FLOORS = (
     ("__main__",),
     ("cli",),
+    ("web",),
     ("report",),
     ("monitor", "importers"),
     ("validation", "flashing"),

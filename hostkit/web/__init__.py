@@ -1,0 +1,1 @@
+"""The page of the monitor: a server on this machine, and what it serves."""
