@@ -27,7 +27,10 @@ COMMANDS = {
     "build": "Compile or analyse generated code.",
     "flash": "Load generated code into a board.",
     "emulate": "Run the generated code on an emulated board or simulator.",
-    "monitor": "Validate a live device against the models.",
+    "ports": "List serial ports and what is behind them.",
+    "monitor": "Watch a device live and judge it against its models.",
+    "record": "Keep what a device sends.",
+    "params": "Read, set, save, load and compare the parameters of a device.",
     "reproduce": "The tilt paper's table and figures beside ours.",
     "doctor": "Show what is installed and how to get what is missing.",
 }
