@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from glob import glob
 from pathlib import Path
 
@@ -67,6 +67,15 @@ Listing = Callable[[], tuple[PortInfo, ...]]
 def list_ports() -> tuple[PortInfo, ...]:
     """Return the serial ports of this machine in the order of their names; none is opened."""
     return tuple(_info(found) for found in sorted(comports()))
+
+
+def port_info(device: str) -> PortInfo:
+    """Return what is known of a port by its name, which may be a link or a pseudo-terminal."""
+    real = Path(device).resolve()
+    for port in list_ports():
+        if Path(port.device).resolve() == real:
+            return replace(port, device=device)
+    return PortInfo(device=device, access=access_of(device), used_by=user_of(device))
 
 
 def _info(found: object) -> PortInfo:
