@@ -10,7 +10,7 @@ from hostkit.cli.output import emit_json
 from hostkit.errors import DeviceError
 from hostkit.link.baud_scan import RATES, BaudScan, scan_baud
 from hostkit.link.clock import SystemClock
-from hostkit.link.ports import PortInfo, list_ports, pick_port, port_info
+from hostkit.link.ports import PortInfo, list_ports, pick_port, port_info, with_use
 from hostkit.link.serial_port import SerialTransport
 
 
@@ -51,7 +51,8 @@ def ports(names: tuple[str, ...], probe: bool, as_json: bool) -> None:
     Example:
       hostkit ports --probe
     """
-    found = tuple(port_info(pick_port(name)) for name in names) or list_ports()
+    named = tuple(port_info(pick_port(name)) for name in names)
+    found = tuple(with_use(port) for port in named or list_ports())
     probes = [_probe(port) if probe and (names or port.candidate) else None for port in found]
     if as_json:
         rows = [_document(port, result) for port, result in zip(found, probes, strict=True)]

@@ -65,7 +65,10 @@ Listing = Callable[[], tuple[PortInfo, ...]]
 
 
 def list_ports() -> tuple[PortInfo, ...]:
-    """Return the serial ports of this machine in the order of their names; none is opened."""
+    """Return the serial ports of this machine in the order of their names; none is opened.
+
+    Access and use are not looked up; see :func:`with_use`.
+    """
     return tuple(_info(found) for found in sorted(comports()))
 
 
@@ -75,7 +78,12 @@ def port_info(device: str) -> PortInfo:
     for port in list_ports():
         if Path(port.device).resolve() == real:
             return replace(port, device=device)
-    return PortInfo(device=device, access=access_of(device), used_by=user_of(device))
+    return PortInfo(device=device)
+
+
+def with_use(port: PortInfo) -> PortInfo:
+    """Return a port with its access and its user."""
+    return replace(port, access=access_of(port.device), used_by=user_of(port.device))
 
 
 def _info(found: object) -> PortInfo:
@@ -92,8 +100,6 @@ def _info(found: object) -> PortInfo:
         manufacturer=_printable(getattr(found, "manufacturer", None)) or None,
         known_as="" if vid is None or pid is None else board_of(vid, pid),
         candidate=vid is not None and not Path(device).name.startswith("ttyS"),
-        access=access_of(device),
-        used_by=user_of(device),
     )
 
 

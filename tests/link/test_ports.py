@@ -11,7 +11,7 @@ from hostkit.errors import DeviceError
 from hostkit.link import ports
 from hostkit.link.boards import BOARDS, board_of
 from hostkit.link.port_use import access_of, user_of
-from hostkit.link.ports import PortFinder, PortInfo, list_ports, pick_port, port_info
+from hostkit.link.ports import PortFinder, PortInfo, list_ports, pick_port, port_info, with_use
 
 UNO = usb("/dev/ttyACM0", 0x2341, 0x0043, "5563")
 NANO = usb("/dev/ttyUSB0", 0x1A86, 0x7523)
@@ -164,7 +164,7 @@ def test_use_of_a_port_is_told_without_opening_it(tmp_path: Path) -> None:
     assert user_of(str(cable.path)) == ""
     descriptor = os.open(cable.real, os.O_RDWR | os.O_NOCTTY)
     assert str(os.getpid()) in user_of(str(cable.path))
-    assert port_info(str(cable.path)).used_by == user_of(cable.real)
+    assert with_use(port_info(str(cable.path))).used_by == user_of(cable.real)
     os.close(descriptor)
     assert user_of(str(cable.path)) == ""
     cable.close()
