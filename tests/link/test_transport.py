@@ -119,9 +119,14 @@ def test_what_is_no_terminal_is_one_clear_error(tmp_path: Path) -> None:
             open_transport(port, 500_000)
 
 
-def test_port_that_goes_away_while_it_is_set_up_is_one_clear_error(
-    cable: Cable, monkeypatch
-) -> None:
+def test_other_urls_of_pyserial_are_refused(tmp_path: Path) -> None:
+    for url in (f"spy:///dev/null?file={tmp_path}/x", "loop://", "hwgrep://uno"):
+        with pytest.raises(DeviceError, match="hostkit takes socket and rfc2217"):
+            open_transport(url, 500_000)
+    assert not list(tmp_path.iterdir())
+
+
+def test_port_that_hangs_up_while_it_is_opened_is_an_error(cable: Cable, monkeypatch) -> None:
     def hang_up(*_: object) -> None:
         raise termios.error(5, "Input/output error")
 
