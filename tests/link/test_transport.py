@@ -93,7 +93,10 @@ def test_second_opening_is_refused_and_possible_after_release(cable: Cable) -> N
 
 
 def test_first_opening_of_what_is_not_there_is_an_error(tmp_path: Path) -> None:
-    for port in (str(tmp_path / "ttyNONE"), "tcp:127.0.0.1:1", "udp:256.0.0.1:1", "tcp:x"):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    names = (str(tmp_path / "ttyNONE"), str(tmp_path / "loop"), "/dev/\0", "auto\0")
+    addresses = ("127.0.0.1:1", "256.0.0.1:1", "x", "a..b:1", f"{'x' * 99}:1", "h:٣", "h:0", ":1")
+    for port in (*names, *(f"tcp:{a}" for a in addresses), *(f"udp:{a}" for a in addresses[1:])):
         with pytest.raises(DeviceError):
             open_link(port, 500_000)
 
