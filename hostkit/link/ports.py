@@ -83,7 +83,8 @@ def port_info(device: str) -> PortInfo:
     for port in list_ports():
         if _is_one(port.device, device):
             return replace(port, device=device)
-    return PortInfo(device=device)
+    is_pty = os.path.realpath(device).startswith("/dev/pts/")
+    return PortInfo(device=device, description="pseudo-terminal" if is_pty else "")
 
 
 def with_use(port: PortInfo) -> PortInfo:
