@@ -44,7 +44,7 @@ class Bench:
         return frame
 
     def run(self, seconds: float) -> None:
-        for k in range(round(seconds * self.rate_hz)):
+        for _ in range(round(seconds * self.rate_hz)):
             self.exchange()
             time_us = self.device_ns() // 1000 % self.wrap_us
             self.samples.append(time_us)
