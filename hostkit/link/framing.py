@@ -27,10 +27,12 @@ Found = tuple[str, bytes]
 
 
 @lru_cache(maxsize=1)
-def _names() -> dict[int, tuple[str, bytes]]:
+def _names() -> dict[bytes, tuple[str, bytes]]:
     """Return name and extra byte of the checksum for each message id of the dialect."""
-    known = python_module().mavlink_map
-    return {number: (kind.msgname, bytes([kind.crc_extra])) for number, kind in known.items()}
+    return {
+        number.to_bytes(3, "little"): (kind.msgname, bytes([kind.crc_extra]))
+        for number, kind in python_module().mavlink_map.items()
+    }
 
 
 @lru_cache(maxsize=1)
@@ -99,13 +101,12 @@ class Framer:
         found: list[Found] = []
         at, size = 0, len(buffer)
         while at < size:
-            start = _START.match(buffer, at)
-            if start is None:
+            if not _START.match(buffer, at):
                 at = self._skip_to_start(buffer, at)
                 continue
             if size - at < HEADER_BYTES:
                 break
-            known = names.get(buffer[at + 7] | buffer[at + 8] << 8 | buffer[at + 9] << 16)
+            known = names.get(buffer[at + ID_AT : at + HEADER_BYTES])
             flags = buffer[at + FLAGS_AT]
             if known is None:
                 self._claim(buffer, at)
