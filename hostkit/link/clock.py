@@ -1,4 +1,4 @@
-"""The time that a session goes by; an argument, so that a test need not wait."""
+"""Time as an argument, so that a test need not wait."""
 
 import time
 from typing import Protocol
@@ -13,6 +13,9 @@ class Clock(Protocol):
     def time(self) -> float:
         """Return seconds since 1970."""
 
+    def sleep(self, duration_s: float) -> None:
+        """Let time pass."""
+
 
 class SystemClock:
     """The clock of the machine."""
@@ -24,3 +27,7 @@ class SystemClock:
     def time(self) -> float:
         """Return seconds since 1970."""
         return time.time()
+
+    def sleep(self, duration_s: float) -> None:
+        """Let time pass."""
+        time.sleep(duration_s)
