@@ -14,6 +14,7 @@ from hostkit.errors import VerdictError
 from hostkit.link.tlog import TlogWriter
 from hostkit.link.transport import open_transport
 from hostkit.monitor import Session, SessionResult
+from hostkit.monitor.document import monitor_document
 from hostkit.targets.atmega328p import ATMEGA328P
 from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thresholds
 
@@ -125,28 +126,6 @@ class _Progress:
         self._next = now + PROGRESS_EVERY_S
         judge = session.validator
         say(f"{judge.samples} samples, {judge.lost} lost, {judge.mismatches} mismatches")
-
-
-def monitor_document(result: SessionResult) -> dict[str, object]:
-    """Return the result of a session as the document ``hostkit.monitor/1``."""
-    report, link = result.report, result.link
-    return {
-        "schema": "hostkit.monitor/1",
-        "samples": report.samples,
-        "checked": report.checked,
-        "lost": report.lost,
-        "lost_frames": link.lost_frames,
-        "bad": link.bad,
-        "bad_bytes": link.bad_bytes,
-        "unknown": link.unknown,
-        "rms_deg": None if report.rms_rad is None else math.degrees(report.rms_rad),
-        "max_deg": None if report.max_rad is None else math.degrees(report.max_rad),
-        "mismatches": report.mismatches,
-        "digest_ok": report.digest_ok,
-        "duration_s": result.duration_s,
-        "verdict": report.verdict,
-        "reasons": list(report.reasons),
-    }
 
 
 def _show(result: SessionResult) -> None:

@@ -94,6 +94,7 @@ def trace_of(frames: list[Frame], axes: tuple[Axis, ...], *, hidden_words: int =
     """
     samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
     restarted_flag = python_module().HOSTKIT_SAMPLE_RESTARTED
+    retuned_flag = python_module().HOSTKIT_SAMPLE_RETUNED
     states = [
         [*(getattr(m, COLUMN[axis]) for axis in axes), *m.hidden[:hidden_words]] for m in samples
     ]
@@ -104,6 +105,7 @@ def trace_of(frames: list[Frame], axes: tuple[Axis, ...], *, hidden_words: int =
         gyro_count=np.array([m.gyro for m in samples], dtype=np.int64).reshape(-1, 3),
         state_raw=np.array(states, dtype=np.int64).reshape(-1, len(axes) + hidden_words),
         restarted=np.array([bool(m.flags & restarted_flag) for m in samples], dtype=np.bool_),
+        retuned=np.array([bool(m.flags & retuned_flag) for m in samples], dtype=np.bool_),
     )
 
 

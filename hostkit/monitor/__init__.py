@@ -1,5 +1,6 @@
 """The monitor: a live session with a verdict."""
 
-from hostkit.monitor.session import Session, SessionResult
+from hostkit.monitor.result import SessionResult
+from hostkit.monitor.session import Session
 
 __all__ = ["Session", "SessionResult"]

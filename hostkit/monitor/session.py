@@ -7,10 +7,10 @@ from typing import Protocol
 
 from hostkit.design_file import digest
 from hostkit.errors import DeviceError
-from hostkit.link.decoder import Decoder, Frame, Source, digest_of, is_retuned, trace_of
-from hostkit.link.statistics import LinkStatistics
+from hostkit.link.decoder import Decoder, Frame, Source, digest_of, trace_of
 from hostkit.link.transport import Transport
-from hostkit.records import AXES, FilterDesign, ValidationReport
+from hostkit.monitor.result import SessionResult
+from hostkit.records import AXES, FilterDesign
 from hostkit.validation import Thresholds, Validator
 
 POLL_S = 0.1
@@ -50,15 +50,6 @@ class Recorder(Protocol):
         """Keep one frame."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionResult:
-    """The verdict of a session, and what the link did meanwhile."""
-
-    report: ValidationReport
-    link: LinkStatistics
-    duration_s: float
-
-
 @dataclass(slots=True, kw_only=True)
 class Session:
     """One device under validation.
@@ -84,7 +75,6 @@ class Session:
     validator: Validator = field(init=False)
     _source: Source | None = None
     _other_digest: str | None = None
-    _retuned: bool = False
     _heard: bytes = b""
     _status_text: str = ""
 
@@ -104,7 +94,7 @@ class Session:
         last_sample = begun
         first_sample: float | None = None
         try:
-            while self._other_digest is None and not self._retuned:
+            while self._other_digest is None:
                 data = self.transport.read(POLL_S)
                 now = self.clock.monotonic()
                 if data is None:
@@ -123,9 +113,8 @@ class Session:
                 raise
         ended = self.clock.monotonic()
         return SessionResult(
-            report=self.validator.report(
-                self.thresholds, other_digest=self._other_digest, retuned=self._retuned
-            ),
+            report=self.validator.report(self.thresholds, other_digest=self._other_digest),
+            thresholds=self.thresholds,
             link=self.decoder.statistics(),
             duration_s=ended - (begun if first_sample is None else first_sample),
         )
@@ -149,9 +138,6 @@ class Session:
         for frame in samples:
             if digest_of(frame) != wanted:
                 self._other_digest = digest_of(frame)
-                return True
-            if is_retuned(frame):
-                self._retuned = True
                 return True
         hidden_words = len(self.validator.spec.hidden)
         self.validator.add(trace_of(samples, AXES[self.design.axes], hidden_words=hidden_words))
