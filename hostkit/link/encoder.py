@@ -26,7 +26,7 @@ class Encoder:
     ) -> None:
         self._mav = python_module().MAVLink(None, srcSystem=system_id, srcComponent=component_id)
         if signing is not None:
-            from hostkit.link.signing import sign_with  # type: ignore
+            from hostkit.link.signing import sign_with
 
             sign_with(self._mav, signing)
 
