@@ -12,9 +12,9 @@ from hostkit.design_file import digest
 from hostkit.errors import VerdictError
 from hostkit.link.device_link import DeviceLink
 from hostkit.link.parameter_facts import ParameterFacts, parameter_facts
-from hostkit.link.transport import open_transport
+from hostkit.link.signing import SigningKey
+from hostkit.link.transport import open_link
 from hostkit.records import FilterDesign
-from hostkit.targets.atmega328p import ATMEGA328P
 
 CHOSEN: Final = "hostkit.link"
 
@@ -51,8 +51,9 @@ class LinkChoice:
         VerdictError
             If the device runs another design.
         """
-        transport = open_transport(self.port, self.baud or ATMEGA328P.baud)
-        link = DeviceLink(transport, system=self.system, facts=self.facts())
+        key = None if self.signing_key is None else SigningKey.read(self.signing_key)
+        transport = open_link(self.port, self.baud, reconnect=False)
+        link = DeviceLink(transport, system=self.system, facts=self.facts(), signing=key)
         try:
             link.find()
             self._check_design(link)

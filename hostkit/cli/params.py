@@ -19,8 +19,8 @@ from hostkit.cli.params_output import (
 from hostkit.errors import HostkitError
 from hostkit.link.device_link import DeviceLink, SettingOutcome
 from hostkit.link.parameter_compare import Difference, differences
+from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_file import read_parameter_file, write_parameter_file
-from hostkit.link.parameters import ParameterEntry
 
 STORED_LATER = "the device stores this when nothing was changed for 3 s; --store does it at once"
 FILE = click.argument(

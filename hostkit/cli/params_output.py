@@ -7,9 +7,9 @@ import click
 
 from hostkit.filters.complementary import eta_from_tau
 from hostkit.link.device_link import DeviceLink, SettingOutcome
+from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_facts import TAU_NAME, ParameterFacts
 from hostkit.link.parameter_file import number_text
-from hostkit.link.parameters import ParameterEntry
 
 SCHEMA = "hostkit.params/1"
 

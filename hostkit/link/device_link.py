@@ -7,12 +7,15 @@ from types import TracebackType
 from typing import Any, Final
 
 from hostkit.errors import DeviceError, HostkitError
+from hostkit.link.clock import SystemClock
 from hostkit.link.commands import CommandClient, CommandStatus
 from hostkit.link.decoder import Decoder, Frame, Source, digest_of
 from hostkit.link.encoder import Encoder
-from hostkit.link.exchange import MachineClock, MonotonicClock
+from hostkit.link.exchange import MonotonicClock
+from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_facts import ParameterFacts
-from hostkit.link.parameters import ParameterClient, ParameterEntry
+from hostkit.link.parameters import ParameterClient
+from hostkit.link.signing import SigningKey
 from hostkit.link.transport import Transport
 
 POLL_S = 0.05
@@ -60,6 +63,8 @@ class DeviceLink:
         System id of the device; None where there is one only.
     facts
         What is known of its parameters.
+    signing
+        Key of a device that knows signed messages only; others are then not listened to.
 
     Attributes
     ----------
@@ -73,13 +78,14 @@ class DeviceLink:
         *,
         system: int | None = None,
         facts: Mapping[str, ParameterFacts] | None = None,
+        signing: SigningKey | None = None,
         clock: MonotonicClock | None = None,
     ) -> None:
         self._transport = transport
         self._system = system
-        self._clock = MachineClock() if clock is None else clock
-        self._encoder = Encoder()
-        self._decoder = Decoder()
+        self._clock = SystemClock() if clock is None else clock
+        self._encoder = Encoder(signing)
+        self._decoder = Decoder(signing)
         self.parameters = ParameterClient(self._send, self._clock, facts=facts)
         self.commands = CommandClient(self._send, self._clock)
         self._heard: Counter[Source] = Counter()
@@ -213,6 +219,7 @@ class DeviceLink:
     def _notice_epoch(self) -> None:
         if self._transport.epoch != self._epoch:
             self._epoch = self._transport.epoch
+            self._decoder.begin_epoch()
             self.parameters.begin_epoch()
             self.commands.begin_epoch()
             self._first = None

@@ -7,9 +7,9 @@ import numpy as np
 
 from hostkit.errors import HostkitError
 from hostkit.filters.complementary import told_by_device, with_told
+from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_facts import FILTER_NAMES
 from hostkit.link.parameter_file import FileParameter
-from hostkit.link.parameters import ParameterEntry
 from hostkit.records import FilterDesign
 
 EQUAL_WITHIN = 1e-6

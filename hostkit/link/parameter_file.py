@@ -12,10 +12,10 @@ import numpy as np
 from hostkit.errors import HostkitError
 from hostkit.files import write_aside
 from hostkit.link.listing import MOST_PARAMETERS
+from hostkit.link.parameter_entry import is_name
 
 LARGEST_FILE_BYTES = 1 << 20
 _NUMBER: Final = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z", re.ASCII)
-_NAME: Final = re.compile(r"[!-~]{1,16}\Z")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +95,7 @@ def _row(place: str, text: str, line: int) -> FileParameter:
             f"{place}: {text[:60]!r} is not a name and a value, such as FILT_TAU 1.5"
         )
     name, number = words
-    if _NAME.match(name) is None:
+    if not is_name(name):
         raise HostkitError(f"{place}: {name[:40]!r} is no name of 1 to 16 characters")
     if _NUMBER.match(number) is None or not math.isfinite(float(number)):
         raise HostkitError(f"{place}: {name} has the value {number[:40]!r}, which is no number")

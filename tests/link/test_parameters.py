@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from answering import M, AnsweringDevice, ManualClock, Sender
+from answering import AnsweringDevice, M, ManualClock, Sender
 from designs import design
 
 from hostkit.errors import HostkitError
