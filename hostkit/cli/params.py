@@ -135,7 +135,7 @@ def load(file: Path, store: bool, as_json: bool) -> None:
     with choice.open() as link:
         entries = link.fetch()
         _check(entries, values, choice)
-        changed = {d.name: values[d.name] for d in differences(entries, rows, choice.design)}
+        changed = {d.name: values[d.name] for d in differences(entries, rows)}
         if len(changed) < len(values):
             say(f"{len(values) - len(changed)} of {len(values)} values are in use already")
         _apply("load", link, changed, choice, store=store, as_json=as_json)
@@ -148,8 +148,8 @@ def load(file: Path, store: bool, as_json: bool) -> None:
 def diff(file: Path, as_json: bool) -> None:
     """Compare the device with a file; exit code 1 if they differ.
 
-    Values that differ by 0.000001 at most are equal: MAVProxy writes no more places. With --design
-    the values of the file are first rounded as the device would.
+    Values that differ by no more than 0.000001, or FILT_TAU by no more than one step of the
+    filter's weight, are equal: MAVProxy writes no more places, and the device has no finer steps.
 
     \b
     Example:
@@ -160,14 +160,15 @@ def diff(file: Path, as_json: bool) -> None:
     with choice.open() as link:
         entries = link.fetch()
         shown = _shown(choice, link)
-    found = differences(entries, rows, choice.design, missing=True)
+    found = differences(entries, rows, missing=True)
     if as_json:
         emit_json(document("diff", link, file=str(file), differences=[_row(d) for d in found]))
     else:
         for difference in found:
             _show_difference(difference, shown)
     if found:
-        raise HostkitError(f"{len(found)} parameters differ between the device and {file}")
+        names = ", ".join(difference.name for difference in found)
+        raise HostkitError(f"the device and {file} differ in {len(found)}: {names}")
 
 
 def _shown(choice: LinkChoice, link: DeviceLink) -> Shown:
