@@ -167,9 +167,9 @@ def test_a_low_terminal_keeps_the_verdict(height: int) -> None:
 
 
 def test_a_narrow_and_low_terminal_shows_the_newest_notices() -> None:
-    lines = drawn(SNAPSHOT, width=40, height=21).splitlines()
+    lines = drawn(SNAPSHOT, width=40, height=19).splitlines()
     assert max(map(len, lines)) <= 40
-    assert len(lines) == 20
+    assert len(lines) == 18
     assert lines[-1].endswith("notice 6")
 
 
