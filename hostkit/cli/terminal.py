@@ -76,6 +76,7 @@ class PlainView:
         self._info = info
         self._angles = ""
         self._next_s = 0.0
+        self._judging = False
         self._last_notice: Notice | None = None
         self._lines: queue.Queue[str | None] = queue.Queue(WAITING_LINES)
         self._writer = threading.Thread(target=self._write, daemon=True)
@@ -111,7 +112,9 @@ class PlainView:
             self._say(f"{len(new) - NOTICES_AT_ONCE} more notices are not shown")
         if new:
             self._last_notice = new[-1]
-        if snapshot.elapsed_s >= self._next_s and not snapshot.ended:
+        first = not self._judging and snapshot.report.samples > 0
+        self._judging |= first
+        if (first or snapshot.elapsed_s >= self._next_s) and not snapshot.ended:
             every_s = EVERY_S if snapshot.elapsed_s < FIRST_S - EVERY_S / 2 else LATER_EVERY_S
             self._next_s = snapshot.elapsed_s + every_s
             self._say(progress_line(snapshot, self._angles))

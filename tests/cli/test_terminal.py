@@ -211,6 +211,13 @@ def test_plain_lines_come_every_second_and_later_every_ten() -> None:
     )
 
 
+def test_the_first_judgement_is_said_at_once() -> None:
+    quiet = replace(SNAPSHOT, notices=(), elapsed_s=0.0)
+    early = replace(quiet, report=replace(REPORT, samples=0))
+    lines = plain(early, replace(quiet, elapsed_s=0.25), replace(quiet, elapsed_s=0.5))
+    assert ["no samples yet" in line for line in lines] == [True, False]
+
+
 def test_plain_lines_tell_each_notice_once_and_a_flood_in_short() -> None:
     one, *rest = SNAPSHOT.notices
     lines = plain(
