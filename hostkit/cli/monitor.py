@@ -2,13 +2,11 @@
 
 import contextlib
 import math
-import sys
-import time
 from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import DESIGN, JSON, finite, read_design, say
+from hostkit.cli.inputs import DESIGN, JSON, finite, read_design
 from hostkit.cli.output import emit_json
 from hostkit.errors import VerdictError
 from hostkit.link.tlog import TlogWriter
@@ -16,8 +14,6 @@ from hostkit.link.transport import open_transport
 from hostkit.monitor import Session, SessionResult
 from hostkit.targets.atmega328p import ATMEGA328P
 from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thresholds
-
-PROGRESS_EVERY_S = 1.0
 
 
 @click.command("monitor")
@@ -101,7 +97,6 @@ def monitor(
             thresholds=Thresholds(max_rms_deg=max_rms_deg, max_lost_share=max_lost_percent / 100.0),
             duration_s=duration_s,
             recorder=recorder,
-            progress=_Progress(),
         )
         result = session.run()
     if as_json:
@@ -110,21 +105,6 @@ def monitor(
         _show(result)
     if result.report.verdict != "pass":
         raise VerdictError(f"verdict {result.report.verdict}: " + "; ".join(result.report.reasons))
-
-
-class _Progress:
-    """Says once a second how it goes, on a terminal only."""
-
-    def __init__(self) -> None:
-        self._next = 0.0
-
-    def __call__(self, session: Session) -> None:
-        now = time.monotonic()
-        if now < self._next or not sys.stderr.isatty():
-            return
-        self._next = now + PROGRESS_EVERY_S
-        judge = session.validator
-        say(f"{judge.samples} samples, {judge.lost} lost, {judge.mismatches} mismatches")
 
 
 def monitor_document(result: SessionResult) -> dict[str, object]:

@@ -1,5 +1,5 @@
 """The monitor: a live session with a verdict."""
 
-from hostkit.monitor.session import Session, SessionResult
+from hostkit.monitor.session import Session, SessionOptions, SessionResult
 
-__all__ = ["Session", "SessionResult"]
+__all__ = ["Session", "SessionOptions", "SessionResult"]
