@@ -9,9 +9,9 @@ import time
 
 os.environ["MAVLINK20"] = "1"
 
-from pymavlink import mavutil  # noqa: E402
+from pymavlink import mavutil
 
-from hostkit.dialect import python_module  # noqa: E402
+from hostkit.dialect import python_module
 
 
 def main(port: str, duration_s: float) -> int:
