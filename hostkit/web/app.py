@@ -64,6 +64,7 @@ class Served:
 
 def application(served: Served) -> ASGIApp:
     """Return the application with its guard before it."""
+    turn = asyncio.Lock()
     routes = [
         Route("/", _index, methods=["GET"]),
         Route("/page/{name}", _page, methods=["GET"]),
@@ -72,9 +73,9 @@ def application(served: Served) -> ASGIApp:
         Route("/api/recordings", _recordings, methods=["GET"]),
         Route("/recordings/{name}", _recording, methods=["GET"]),
         Route("/stream", Streaming(served.hub), methods=["GET"]),
-        _report("html", "text/html", served.reports.html),
-        _report("json", "application/json", served.reports.json),
-        _report("xml", "application/xml", served.reports.xml),
+        _report("html", "text/html", served.reports.html, turn),
+        _report("json", "application/json", served.reports.json, turn),
+        _report("xml", "application/xml", served.reports.xml, turn),
     ]
     actions = Actions(served.controls, served.folder).by_path
     routes += [
@@ -146,10 +147,12 @@ def _recording(request: Request) -> Response:
     )
 
 
-def _report(kind: str, media_type: str, make: Callable[[], bytes]) -> Route:
-    def report(request: Request) -> Response:
+def _report(kind: str, media_type: str, make: Callable[[], bytes], turn: asyncio.Lock) -> Route:
+    async def report(request: Request) -> Response:
         try:
-            content = make()
+            # One at a time: drawing takes a while, and not every library of it is for threads.
+            async with turn:
+                content = await run_in_threadpool(make)
         except HostkitError as error:
             return failure(409, str(error))
         return download(content, f"hostkit-report.{kind}", media_type)

@@ -99,10 +99,9 @@ def open_recording(folder: Path, name: str) -> BinaryIO | None:
         number = os.open(folder / name, flags | getattr(os, "O_BINARY", 0))
     except OSError:
         return None
-    opened = os.fdopen(number, "rb")
     if stat.S_ISREG(os.fstat(number).st_mode) and not (folder / name).is_symlink():
-        return opened
-    opened.close()
+        return os.fdopen(number, "rb")
+    os.close(number)
     return None
 
 

@@ -3,6 +3,7 @@
 import asyncio
 import threading
 from collections import deque
+from dataclasses import replace
 from itertools import groupby
 
 from hostkit.monitor.snapshot import Batch, SessionInfo, Snapshot
@@ -120,6 +121,8 @@ class Hub:
         if not len(batch):
             return
         with self._lock:
+            if batch.epoch < self._snapshot.epoch:
+                batch = replace(batch, epoch=self._snapshot.epoch)
             self._pending.append(batch)
             self._pending_samples += len(batch)
             while self._pending_samples > PENDING_SAMPLES and len(self._pending) > 1:

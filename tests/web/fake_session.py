@@ -134,12 +134,23 @@ def snapshot(**changes) -> Snapshot:
     return replace(state, **changes)
 
 
-def parameters() -> tuple[ParameterState, ...]:
+def parameters(tau_s: float = 0.49) -> tuple[ParameterState, ...]:
+    filter_ones = (
+        ("FILT_TAU", "s", tau_s, 0.005, 300.0),
+        ("GYRO_BIAS_ROLL", "rad/s", 0.0, -0.5, 0.5),
+        ("GYRO_BIAS_PITCH", "rad/s", 0.0, -0.5, 0.5),
+        ("TILT_OFS_ROLL", "rad", 0.0, -0.5, 0.5),
+        ("TILT_OFS_PITCH", "rad", 0.0, -0.5, 0.5),
+    )
     return (
-        ParameterState(
-            name="FILT_ETA", value=0.98, unit="1", design_value=0.98, lowest=0.0, highest=1.0
+        ParameterState(name="SYS_ID", value=1.0, unit="", lowest=1.0, highest=254.0),
+        ParameterState(name="CAL_START", value=0.0, unit="", lowest=0.0, highest=1.0),
+        *(
+            ParameterState(
+                name=name, value=value, unit=unit, design_value=value, lowest=low, highest=high
+            )
+            for name, unit, value, low, high in filter_ones
         ),
-        ParameterState(name="TELEM_DIV", value=1.0, unit="1", lowest=1.0, highest=100.0),
     )
 
 
@@ -169,6 +180,7 @@ class FakeControls:
     lock: threading.RLock = field(default_factory=threading.RLock)
 
     def __post_init__(self) -> None:
+        self.change(parameters=parameters(self.info().tau_s))
         if self.replayed:
             replay = ReplayState(
                 position_s=0.0, length_s=LENGTH_S, speed=1.0, paused=False, ended=False
