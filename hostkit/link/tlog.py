@@ -39,23 +39,35 @@ def read_tlog(path: Path) -> Generator[bytes, None, None]:
 
 def _frames(file: BinaryIO, path: Path) -> Generator[bytes, None, None]:
     with file:
-        window, begin = file.read(CHUNK_BYTES), 0
-        if _MAGIC.match(window, STAMP.size) is None:
-            raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
-        while True:
-            if len(window) - begin < STAMP.size + LONGEST_FRAME_BYTES:
-                window, begin = window[begin:] + file.read(CHUNK_BYTES), 0
-            if len(window) - begin <= STAMP.size:
-                return
-            frame = _frame_at(window, begin + STAMP.size)
-            if frame is not None:
-                yield frame
-                begin += STAMP.size + len(frame)
-            else:
-                begin = _next_stamp(window, begin)
+        for _, frame in stamped_frames(file, path):
+            yield frame
 
 
-def _frame_at(window: bytes, begin: int) -> bytes | None:
+def stamped_frames(file: BinaryIO, path: Path) -> Generator[tuple[int, bytes], None, None]:
+    """Yield time stamps, us since 1970, and frames, from where a file stands.
+
+    Raises
+    ------
+    DeviceError
+        If no frame follows the first time stamp.
+    """
+    window, begin = file.read(CHUNK_BYTES), 0
+    if _MAGIC.match(window, STAMP.size) is None:
+        raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
+    while True:
+        if len(window) - begin < STAMP.size + LONGEST_FRAME_BYTES:
+            window, begin = window[begin:] + file.read(CHUNK_BYTES), 0
+        if len(window) - begin <= STAMP.size:
+            return
+        frame = frame_at(window, begin + STAMP.size)
+        if frame is not None:
+            yield STAMP.unpack_from(window, begin)[0], frame
+            begin += STAMP.size + len(frame)
+        else:
+            begin = _next_stamp(window, begin)
+
+
+def frame_at(window: bytes, begin: int) -> bytes | None:
     """Return the frame that begins there, or None if there is no whole one."""
     head = window[begin : begin + 3]
     if len(head) < 3 or head[0] not in (MAGIC_V1, MAGIC_V2):

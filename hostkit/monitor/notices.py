@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from hostkit.monitor.clock import Clock
+from hostkit.link.clock import Clock
 from hostkit.monitor.snapshot import Level, Notice
 
 KEPT = 50

@@ -12,7 +12,7 @@ from hostkit.link.decoder import Decoder
 from hostkit.link.statistics import LinkStatistics, TimingStatistics
 from hostkit.link.tlog import TlogWriter
 from hostkit.link.transport import Transport
-from hostkit.monitor.clock import Clock, SystemClock
+from hostkit.link.clock import Clock, SystemClock
 from hostkit.monitor.controls import SessionControls
 from hostkit.monitor.device_status import Watches
 from hostkit.monitor.inbox import Inbox
