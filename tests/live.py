@@ -104,7 +104,7 @@ def program(folder: Path, *arguments: str) -> Iterator[Program]:
         running.end()
 
 
-@dataclass(slots=True)
+@dataclass
 class Complaints:
     """What a page should not do: errors on its console, failed or foreign requests."""
 

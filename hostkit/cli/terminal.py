@@ -115,8 +115,8 @@ class PlainView:
         first = not self._judging and snapshot.report.samples > 0
         self._judging |= first
         if (first or snapshot.elapsed_s >= self._next_s) and not snapshot.ended:
-            every_s = EVERY_S if snapshot.elapsed_s < FIRST_S - EVERY_S / 2 else LATER_EVERY_S
-            self._next_s = snapshot.elapsed_s + every_s
+            every_s = EVERY_S if snapshot.elapsed_s < FIRST_S else LATER_EVERY_S
+            self._next_s = (snapshot.elapsed_s // every_s + 1.0) * every_s
             self._say(progress_line(snapshot, self._angles))
 
     def _say(self, line: str) -> None:
@@ -145,10 +145,10 @@ def progress_line(snapshot: Snapshot, angles: str) -> str:
     parts = [verdict_text(snapshot)]
     if snapshot.port_state != "connected":
         parts.append(f"port {snapshot.port_state}")
-    parts += [
-        f"{report.samples} samples, {snapshot.samples_per_s:.0f}/s, {report.lost} lost",
-        f"{report.mismatches} of {report.checked} steps differ",
-    ]
+    if report.samples:
+        parts.append(f"{report.samples} samples, {snapshot.samples_per_s:.0f}/s")
+        parts.append(f"{report.lost} lost")
+        parts.append(f"{report.mismatches} of {report.checked} steps differ")
     if report.rms_rad is not None:
         parts.append(f"residual {math.degrees(report.rms_rad):.6f} deg rms")
     if angles:

@@ -205,7 +205,7 @@ def test_plain_lines_come_every_second_and_later_every_ten() -> None:
     times_s = [int(line.split()[0]) for line in lines]
     assert times_s == [*range(11), 20, 30]
     assert lines[0].endswith(
-        "fail so far; 2460 samples, 200/s, 3 lost; 2 of 2459 steps differ; "
+        "fail so far; 2460 samples, 200/s; 3 lost; 2 of 2459 steps differ; "
         "residual 0.250000 deg rms; roll 12.500 deg, pitch -30.250 deg; "
         "link: 11 lost, 15 bad, 16 unknown"
     )
