@@ -20,7 +20,7 @@ from benchmarks.live_device import (
     running,
     watch,
 )
-from benchmarks.live_page import page_rows
+from benchmarks.live_page import page_table
 from benchmarks.table import Table, figure
 from hostkit.cli.inputs import say
 from hostkit.errors import HostkitError
@@ -65,20 +65,7 @@ def tables() -> Iterator[Table]:
     with live_device(RATE_HZ) as device:
         yield sustained(device, duration_s)
         yield starts(device)
-    yield Table(
-        title="Page: headless Chromium with software drawing, 15 updates a second asked for",
-        columns=(
-            "rate, Hz",
-            "sample to drawn, median, ms",
-            "95 %, ms",
-            "first quarter, ms",
-            "last quarter, ms",
-            "updates/s",
-            "server, % of one core",
-            "missed batches",
-        ),
-        rows=tuple(page_rows(200.0)) + tuple(page_rows(1000.0)),
-    )
+    yield page_table()
 
 
 def wanted_seconds(text: str) -> float:

@@ -177,9 +177,7 @@ class Conversation:
         self._next_version_s = now_s + VERSION_EVERY_S
         values = (AUTOPILOT_VERSION, 0, 0, 0, 0, 0, 0)
         dialect = python_module()
-        self.send(
-            dialect.MAVLink_command_long_message(*self._target, REQUEST_MESSAGE, 0, *values)
-        )
+        self.send(dialect.MAVLink_command_long_message(*self._target, REQUEST_MESSAGE, 0, *values))
 
 
 def _heartbeat() -> Any:

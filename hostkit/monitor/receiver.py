@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from hostkit.link.clock import Clock
 from hostkit.link.decoder import Decoder, Frame
 from hostkit.link.statistics import LinkStatistics
 from hostkit.link.transport import Transport
-from hostkit.link.clock import Clock
 from hostkit.monitor.notices import Notices
 
 HEARD_BYTES = 512

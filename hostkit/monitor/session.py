@@ -8,11 +8,11 @@ from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.errors import DeviceError, HostkitError
 from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.link.clock import Clock, SystemClock
 from hostkit.link.decoder import Decoder
 from hostkit.link.statistics import LinkStatistics, TimingStatistics
 from hostkit.link.tlog import TlogWriter
 from hostkit.link.transport import Transport
-from hostkit.link.clock import Clock, SystemClock
 from hostkit.monitor.controls import SessionControls
 from hostkit.monitor.device_status import Watches
 from hostkit.monitor.inbox import Inbox
