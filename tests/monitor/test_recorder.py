@@ -191,8 +191,10 @@ def test_a_killed_program_loses_nothing_that_it_had_written(tmp_path: Path) -> N
 
 @pytest.mark.parametrize(
     "name",
-    ["", ".tlog", "../a.tlog", "a/b.tlog", "a\\b.tlog", "C:a.tlog", "a\n.tlog", "a.exe", "a"]
-    + ["a" * 100 + ".tlog", "\x1b[2J.tlog", "a\0.tlog", "/etc/a.csv"],
+    [
+        *("", ".tlog", "../a.tlog", "a/b.tlog", "a\\b.tlog", "C:a.tlog", "a\n.tlog", "a.exe"),
+        *("a", "a" * 100 + ".tlog", "\x1b[2J.tlog", "a\0.tlog", "/etc/a.csv"),
+    ],
 )
 def test_a_name_cannot_leave_the_folder(name: str) -> None:
     with pytest.raises(HostkitError):
