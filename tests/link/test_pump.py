@@ -121,7 +121,9 @@ def test_release_closes_before_it_returns_and_take_opens() -> None:
 
 def test_orders_of_several_threads_are_all_carried_out() -> None:
     pump = pump_of(FakeTransport())
-    failures = []
+    failures, released = [], []
+    release = pump._port.release
+    pump._port.release = lambda: released.append(release())
 
     def order() -> None:
         try:
@@ -138,6 +140,7 @@ def test_orders_of_several_threads_are_all_carried_out() -> None:
     for thread in threads:
         thread.join(20)
     assert not failures
+    assert len(released) == 20
     wait_until(lambda: pump.state == "connected")
     pump.close()
 
@@ -164,4 +167,19 @@ def test_close_ends_the_thread_quickly_and_calls_what_was_asked() -> None:
     assert time.monotonic() - before_s < 1.0
     assert (called, pump._thread.is_alive(), pump.state) == ([True], False, "ended")
     assert pump.read(1.0) is None
+    pump.close()
+
+
+def test_small_pieces_wait_for_each_other() -> None:
+    port, begin_s = FakeTransport(*numbered(20, 100)), time.monotonic()
+    pump = pump_of(port)
+    wait_until(lambda: not port.chunks)
+    assert time.monotonic() - begin_s >= 19 * 0.02
+    pump.close()
+
+
+def test_large_pieces_wait_for_nothing() -> None:
+    port = FakeTransport(*numbered(20, 4000))
+    pump = pump_of(port, batch_s=1000.0)
+    wait_until(lambda: not port.chunks)
     pump.close()

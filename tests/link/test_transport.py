@@ -2,14 +2,22 @@
 
 import os
 import socket
+import termios
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import serial
+import serial.rfc2217
+from designs import design
+from device import Device
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
+from hostkit.link import transport
+from hostkit.link.baud_scan import BaudScan
 from hostkit.link.serial_port import SerialTransport, explain
 from hostkit.link.sockets import SocketTransport, connect, listen
 from hostkit.link.transport import open_link, open_transport
@@ -85,7 +93,10 @@ def test_second_opening_is_refused_and_possible_after_release(cable: Cable) -> N
 
 
 def test_first_opening_of_what_is_not_there_is_an_error(tmp_path: Path) -> None:
-    for port in (str(tmp_path / "ttyNONE"), "tcp:127.0.0.1:1", "udp:256.0.0.1:1", "tcp:x"):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    names = (str(tmp_path / "ttyNONE"), str(tmp_path / "loop"), "/dev/\0", "auto\0")
+    addresses = ("127.0.0.1:1", "256.0.0.1:1", "x", "a..b:1", f"{'x' * 99}:1", "h:٣", "h:0", ":1")
+    for port in (*names, *(f"tcp:{a}" for a in addresses), *(f"udp:{a}" for a in addresses[1:])):
         with pytest.raises(DeviceError):
             open_link(port, 500_000)
 
@@ -111,10 +122,30 @@ def test_what_is_no_terminal_is_one_clear_error(tmp_path: Path) -> None:
             open_transport(port, 500_000)
 
 
+def test_other_urls_of_pyserial_are_refused(tmp_path: Path) -> None:
+    for url in (f"spy:///dev/null?file={tmp_path}/x", "loop://", "hwgrep://uno"):
+        with pytest.raises(DeviceError, match="hostkit takes socket and rfc2217"):
+            open_transport(url, 500_000)
+    assert not list(tmp_path.iterdir())
+
+
+def test_port_that_hangs_up_while_it_is_opened_is_an_error(cable: Cable, monkeypatch) -> None:
+    def hang_up(*_: object) -> None:
+        raise termios.error(5, "Input/output error")
+
+    monkeypatch.setattr(termios, "tcflush", hang_up)
+    with pytest.raises(DeviceError, match="Input/output error"):
+        open_transport(str(cable.path), 500_000)
+
+
 def test_rate_of_an_open_port_can_be_changed(cable: Cable) -> None:
     port = SerialTransport(str(cable.path), 115_200)
+    cable.send(b"at the old rate")
+    wait_until(lambda: port._port.in_waiting == 15)
     assert port.set_baud(57_600)
     assert port.baud == 57_600
+    cable.send(b"new")
+    assert read_until(port, lambda got: len(got) >= 3) == b"new"
     cable.unplug(keep_name=True)
     assert not port.set_baud(115_200)
     port.close()
@@ -214,10 +245,31 @@ def test_udp_read_takes_all_datagrams_that_wait() -> None:
         for k in range(100):
             sender.sendto(bytes([k]), ("127.0.0.1", number))
         sender.sendto(b"", ("127.0.0.1", number))
-    assert read_until(port, lambda got: len(got) >= 100) == bytes(range(100))
+    assert port.read(5.0) == bytes(range(100))
     port.close()
     port.write(b"x")
     assert port.read(0.0) is None
+
+
+def test_udp_answer_that_met_nobody_is_no_loss() -> None:
+    class Windows(socket.socket):
+        """There an unreachable peer shows as a reset at the next read."""
+
+        resets = 1
+
+        def recvfrom(self, size: int):
+            if self.resets:
+                self.resets -= 1
+                raise ConnectionResetError("10054")
+            return super().recvfrom(size)
+
+    with Windows(socket.AF_INET, socket.SOCK_DGRAM) as ours:
+        ours.bind(("127.0.0.1", 0))
+        port = SocketTransport(ours)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"still here", ours.getsockname())
+        assert port.read(5.0) == b""
+        assert (port.read(5.0), port.state) == (b"still here", "connected")
 
 
 def test_tcp_over_ip_6() -> None:
@@ -251,3 +303,84 @@ def test_no_descriptor_is_left_open(cable: Cable) -> None:
         with pytest.raises(DeviceError):
             open_link("/dev/null", 500_000)
     assert len(os.listdir("/proc/self/fd")) == before  # noqa: PTH208
+
+
+def test_rate_that_is_not_given_is_found_out(cable: Cable, monkeypatch) -> None:
+    stop = threading.Event()
+    frames = b"".join(Device(design()).frames(5))
+
+    def device() -> None:
+        while not stop.is_set():
+            cable.send(frames)
+            stop.wait(0.01)
+
+    thread = threading.Thread(target=device)
+    thread.start()
+    link = open_link(str(cable.path), None)
+    assert read_until(link, lambda got: len(got) > len(frames))
+    stop.set()
+    thread.join(30)
+    link.close()
+
+
+def test_port_whose_rate_is_not_found_is_closed(cable: Cable, monkeypatch) -> None:
+    text = BaudScan(finding="text", baud=9600, sample="hello")
+    monkeypatch.setattr(transport, "scan_baud", lambda port, clock: text)
+    with pytest.raises(DeviceError, match="gives text at 9600 bit/s, such as 'hello'") as caught:
+        open_link(str(cable.path), None)
+    open_transport(str(cable.path), 500_000).close()
+    assert caught.tb  # keeps what was opened from being collected, and closed so
+
+
+def serve_rfc2217(
+    listener: socket.socket, echo: serial.SerialBase, stop: threading.Event | None = None
+) -> None:
+    """Serve a loop-back port over the network, as a terminal server does."""
+    peer, _ = listener.accept()
+    with peer:
+        peer.settimeout(0.02)
+        manager = serial.rfc2217.PortManager(echo, SimpleNamespace(write=peer.sendall))
+        while stop is None or not stop.is_set():
+            try:
+                got = peer.recv(4096)
+            except TimeoutError:
+                continue
+            except OSError:
+                return
+            if not got:
+                return
+            echo.write(b"".join(manager.filter(got)))
+            peer.sendall(b"".join(manager.escape(echo.read(echo.in_waiting))))
+
+
+def test_port_of_a_terminal_server() -> None:
+    echo = serial.serial_for_url("loop://", timeout=0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        server = threading.Thread(target=serve_rfc2217, args=(listener, echo))
+        server.start()
+        url = f"rfc2217://127.0.0.1:{listener.getsockname()[1]}"
+        port = SerialTransport(url, 115_200)
+        assert echo.baudrate == 115_200
+        assert port.set_baud(500_000)
+        assert echo.baudrate == 500_000
+        port.write(b"\xff there and back")
+        assert read_until(port, lambda got: len(got) >= 16) == b"\xff there and back"
+        port.close()
+        server.join(30)
+        assert not server.is_alive()
+
+
+def test_terminal_server_that_goes_away_is_a_loss() -> None:
+    echo = serial.serial_for_url("loop://", timeout=0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        stop = threading.Event()
+        server = threading.Thread(target=serve_rfc2217, args=(listener, echo, stop))
+        server.start()
+        port = SerialTransport(f"rfc2217://127.0.0.1:{listener.getsockname()[1]}", 115_200)
+        stop.set()
+        server.join(30)
+        wait_until(lambda: port.read(0.05) is None)
+        assert (port.state, port.read(0.0)) == ("lost", None)
+        assert not port.set_baud(9600)
+        port.write(b"nobody hears this")
+        port.close()
