@@ -1,119 +1,154 @@
 """From bytes to MAVLink messages, with an account of what was lost on the way."""
 
 import logging
-from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
 from hostkit.dialect import python_module
+from hostkit.link.framing import COMPONENT_AT, SEQUENCE_AT, SYSTEM_AT, Found, Framer
+from hostkit.link.samples import digest_of, is_retuned, trace_of
+from hostkit.link.sequence import SequenceAccount, Source
+from hostkit.link.signing import SignatureCheck, SigningKey
 from hostkit.link.statistics import LinkStatistics
-from hostkit.records import AngleTrace, Axis
 
-Source = tuple[int, int]
-"""System and component id of a sender."""
+__all__ = ["Decoder", "Frame", "Source", "digest_of", "is_retuned", "trace_of"]
 
 logging.getLogger("pymavlink").setLevel(logging.CRITICAL)
 
-COLUMN: dict[Axis, str] = {"roll": "roll", "pitch": "pitch"}
+
+@lru_cache(maxsize=1)
+def _unpacker() -> Any:
+    return python_module().MAVLink(None)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """One message that arrived whole: its sender, its content, its bytes."""
+    """One message that arrived whole: its sender, its content, its bytes.
 
-    source: Source
-    name: str
-    message: Any
-    raw: bytes
-
-
-@dataclass(slots=True)
-class Decoder:
-    """A MAVLink 2 parser that counts.
-
-    pymavlink reports an unknown message id without checking its checksum, so such a frame may be
-    noise: it is counted and its sequence number is not used.
+    Attributes
+    ----------
+    raw
+        The whole frame, from its first byte to its checksum or signature.
+    sequence
+        Its number, 0 to 255.
+    repeated
+        Whether it is a copy of one that came before.
     """
 
-    frames: int = 0
-    lost_frames: int = 0
-    bad: int = 0
-    bad_bytes: int = 0
-    unknown: int = 0
-    _last: dict[Source, int] = field(default_factory=dict)
-    _parser: Any = None
+    __slots__ = ("_message", "name", "raw", "repeated", "sequence", "source")
 
-    def __post_init__(self) -> None:
-        """Make the parser."""
-        self._parser = python_module().MAVLink(None)
-        self._parser.robust_parsing = True
+    def __init__(
+        self,
+        source: Source,
+        name: str,
+        message: Any,
+        raw: bytes,
+        sequence: int,
+        repeated: bool = False,
+    ) -> None:
+        self.source = source
+        self.name = name
+        self._message = message
+        self.raw = raw
+        self.sequence = sequence
+        self.repeated = repeated
 
-    def feed(self, data: bytes) -> list[Frame]:
-        """Return the messages that `data` completes; it may be any bytes at all."""
-        messages = self._parser.parse_buffer(data) or []
-        return [frame for message in messages if (frame := self._account(message)) is not None]
+    @property
+    def message(self) -> Any:
+        """The content, unpacked by pymavlink when it is first asked for.
 
-    def _account(self, message: Any) -> Frame | None:
-        name = message.get_type()
-        if name == "BAD_DATA":
-            self.bad += 1
-            self.bad_bytes += len(message.data)
-            return None
-        if name.startswith("UNKNOWN_"):
-            self.unknown += 1
-            return None
-        source = (message.get_srcSystem(), message.get_srcComponent())
-        sequence = message.get_seq()
-        if source in self._last:
-            self.lost_frames += (sequence - self._last[source] - 1) % 256
-        self._last[source] = sequence
-        self.frames += 1
-        return Frame(source=source, name=name, message=message, raw=bytes(message.get_msgbuf()))
+        It is what the sender says: numbers may be NaN or infinite, counts out of any range, and
+        texts hold any characters.
+        """
+        if self._message is None:
+            self._message = _unpacker().decode(bytearray(self.raw))
+        return self._message
 
-    def statistics(self) -> LinkStatistics:
-        """Return the account so far."""
-        return LinkStatistics(
-            frames=self.frames,
-            lost_frames=self.lost_frames,
-            bad=self.bad,
-            bad_bytes=self.bad_bytes,
-            unknown=self.unknown,
-        )
+    def __repr__(self) -> str:
+        return f"Frame({self.name} {self.sequence} of {self.source}, {len(self.raw)} bytes)"
 
 
-def trace_of(frames: list[Frame], axes: tuple[Axis, ...], *, hidden_words: int = 0) -> AngleTrace:
-    """Return the ``TILT_SAMPLE`` messages among `frames` as a trace.
+class Decoder:
+    """A MAVLink 2 decoder that counts.
 
     Parameters
     ----------
-    axes
-        Axes of the design.
-    hidden_words
-        Words of its filter's state beside the angles.
+    signing
+        With a key, frames without a right and fresh signature are refused and counted; their
+        numbers are not used. Without one, signed frames are taken like any other.
     """
-    samples = [frame.message for frame in frames if frame.name == "TILT_SAMPLE"]
-    restarted_flag = python_module().HOSTKIT_SAMPLE_RESTARTED
-    retuned_flag = python_module().HOSTKIT_SAMPLE_RETUNED
-    states = [
-        [*(getattr(m, COLUMN[axis]) for axis in axes), *m.hidden[:hidden_words]] for m in samples
-    ]
-    return AngleTrace(
-        sequence=np.array([m.sequence for m in samples], dtype=np.int64),
-        time_us=np.array([m.time_usec for m in samples], dtype=np.uint64).astype(np.int64),
-        accel_count=np.array([m.accel for m in samples], dtype=np.int64).reshape(-1, 3),
-        gyro_count=np.array([m.gyro for m in samples], dtype=np.int64).reshape(-1, 3),
-        state_raw=np.array(states, dtype=np.int64).reshape(-1, len(axes) + hidden_words),
-        restarted=np.array([bool(m.flags & restarted_flag) for m in samples], dtype=np.bool_),
-        retuned=np.array([bool(m.flags & retuned_flag) for m in samples], dtype=np.bool_),
-    )
 
+    __slots__ = ("_framer", "_sequences", "_signatures", "bad_signatures")
 
-def digest_of(frame: Frame) -> str:
-    """Return the design digest of a ``TILT_SAMPLE``, 12 hex digits."""
-    return bytes(frame.message.digest).hex()
+    def __init__(self, signing: SigningKey | None = None) -> None:
+        self.bad_signatures = 0
+        self._framer = Framer()
+        self._sequences = SequenceAccount()
+        self._signatures = None if signing is None else SignatureCheck(signing)
 
+    def feed(self, data: bytes) -> list[Frame]:
+        """Return the messages that `data` completes; it may be any bytes at all.
 
-def is_retuned(frame: Frame) -> bool:
-    """Tell whether a ``TILT_SAMPLE`` was made with other parameters than those of its design."""
-    return bool(frame.message.flags & python_module().HOSTKIT_SAMPLE_RETUNED)
+        Copies of a frame are returned too, and say so.
+        """
+        found = self._framer.feed(data)
+        if self._signatures is not None:
+            found = self._trusted(found, self._signatures)
+        take = self._sequences.take
+        frames = []
+        for name, raw in found:
+            source, sequence = (raw[SYSTEM_AT], raw[COMPONENT_AT]), raw[SEQUENCE_AT]
+            frames.append(Frame(source, name, None, raw, sequence, take(source, sequence, raw)))
+        return frames
+
+    def begin_epoch(self) -> None:
+        """Begin anew after the port was opened anew: what was half received is bad bytes."""
+        self._framer.drop()
+        self._sequences.forget()
+
+    def _trusted(self, found: list[Found], check: SignatureCheck) -> list[Found]:
+        trusted = [(name, raw) for name, raw in found if check.accepts(raw)]
+        self.bad_signatures += len(found) - len(trusted)
+        return trusted
+
+    @property
+    def frames(self) -> int:
+        """Frames that arrived whole, each once."""
+        return self.statistics().frames
+
+    @property
+    def lost_frames(self) -> int:
+        """Frames that never arrived."""
+        return self.statistics().lost_frames
+
+    @property
+    def bad(self) -> int:
+        """Pieces of the stream that were no frame."""
+        return self._framer.bad
+
+    @property
+    def bad_bytes(self) -> int:
+        """The bytes of those pieces."""
+        return self._framer.bad_bytes
+
+    @property
+    def unknown(self) -> int:
+        """Frames of an id that the dialect does not have."""
+        return self._framer.unknown
+
+    def statistics(self) -> LinkStatistics:
+        """Return the account so far."""
+        framer, sources = self._framer, self._sequences.statistics()
+        return LinkStatistics(
+            received_bytes=framer.received_bytes,
+            frames=sum(source.frames for source in sources),
+            lost_frames=sum(source.lost for source in sources),
+            duplicated=sum(source.duplicated for source in sources),
+            reordered=sum(source.reordered for source in sources),
+            bad=framer.bad,
+            bad_bytes=framer.bad_bytes,
+            crc_failures=framer.crc_failures,
+            bad_signatures=self.bad_signatures,
+            unknown=framer.unknown,
+            resyncs=framer.resyncs,
+            sources=sources,
+        )
