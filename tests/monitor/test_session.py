@@ -37,12 +37,17 @@ class FakePort:
         self, clock: FakeClock, chunks: list[bytes], *, live: bool = True, ends: bool = False
     ):
         self.clock, self.chunks, self.live, self.ends = clock, list(chunks), live, ends
+        self.state, self.epoch, self.overrun_bytes = "connected", 0, 0
+        self.sent: list[bytes] = []
 
     def read(self, timeout_s: float) -> bytes | None:
         self.clock.now += READ_S
         if self.chunks:
             return self.chunks.pop(0)
         return None if self.ends else b""
+
+    def write(self, data: bytes) -> None:
+        self.sent.append(data)
 
     def close(self) -> None:
         pass
@@ -203,7 +208,8 @@ def test_tcp_device() -> None:
             connection, _ = server.accept()
             with connection:
                 connection.sendall(b"".join(frames))
-                connection.recv(1)
+                while connection.recv(4096):
+                    pass
 
         thread = threading.Thread(target=send, daemon=True)
         thread.start()
