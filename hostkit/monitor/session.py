@@ -220,6 +220,8 @@ class Session:
             self._begin_epoch()
         if received.ended:
             self._end_of_stream()
+        if received.lost_some:
+            self.validator.doubt_parameters()
         frames = received.frames
         parts.recordings.add(int(self.clock.time() * 1e6), frames)
         parts.outlets.send(frames)
@@ -280,6 +282,7 @@ class Session:
         conversation = self._parts.conversation
         for raw in self._parts.outlets.receive():
             conversation.pass_on(raw)
+        conversation.learn(self.validator.untold)
         conversation.poll()
         if self.transport.live and self._parts.judge.source is not None:
             request = self._parts.timesync.poll()
