@@ -1,4 +1,4 @@
-"""MAVProxy as a ground station: what is typed, and what it prints."""
+"""MAVProxy as its users run it: what is typed, and what it prints."""
 
 import contextlib
 import importlib.util
@@ -15,7 +15,8 @@ PATIENCE_S = 60.0
 MODULES = "link,param,cmdlong,calibration,misc"
 
 
-def mavproxy_or_skip() -> None:
+def require_station() -> None:
+    """Skip where MAVProxy is missing."""
     if importlib.util.find_spec("MAVProxy") is None:
         pytest.skip("MAVProxy is not installed: pip install --no-deps MAVProxy")
 

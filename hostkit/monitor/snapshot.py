@@ -35,6 +35,8 @@ class Batch:
     begins
         True where a sample does not follow the one before it: a line is broken there. Shape
         ``(N,)``.
+    epoch
+        The epoch its samples belong to, as in `Snapshot`.
     """
 
     time_s: Vector
@@ -44,6 +46,7 @@ class Batch:
     residual_rad: Vector
     mismatch: NDArray[np.bool_]
     begins: NDArray[np.bool_]
+    epoch: int = 0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

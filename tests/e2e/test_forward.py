@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from boards import require_or_skip
 from designs import design
-from station import PATIENCE_S, GroundStation, mavproxy_or_skip
+from station import PATIENCE_S, GroundStation, require_station
 
 from hostkit.design_file import save_design
 from hostkit.recordings import save
@@ -28,7 +28,7 @@ AFTER_CHANGE_SAMPLES = 100
 def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]]:
     """The pty of an emulated AVR that is moved, and the file of its design."""
     require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
-    mavproxy_or_skip()
+    require_station()
     folder = tmp_path_factory.mktemp("forward")
     recording = simulate(
         "sine-sweep",

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from boards import require_or_skip
 from designs import design
-from station import PATIENCE_S, GroundStation, mavproxy_or_skip
+from station import PATIENCE_S, GroundStation, require_station
 
 from hostkit.design_file import save_design
 from hostkit.link.decoder import Decoder
@@ -26,7 +26,7 @@ TURN_ON_RATE_RAD_S = 0.05
 def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A still sensor, whose gyroscope has an offset, on an emulated AVR."""
     require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
-    mavproxy_or_skip()
+    require_station()
     folder = tmp_path_factory.mktemp("mavproxy")
     recording = simulate(
         "rest",

@@ -1,0 +1,56 @@
+// The head of the page: port, device, design, epoch, and the verdict with its reasons.
+
+import { byId, element, text } from "./dom.js";
+import { clock, figure } from "./format.js";
+
+const PORT_MARKS = { connected: "ok", lost: "bad", released: "warn", ended: "" };
+
+export function showInfo(info) {
+  text(byId("port-name"), info.port);
+  const node = byId("design-name");
+  text(node, `${info.design_digest} · τ ${figure(info.tau_s, 3)} s · ${figure(info.rate_hz)} Hz`);
+  node.title = `η ${figure(info.eta, 6)}, crossover ${figure(info.crossover_hz, 3)} Hz, ` +
+    `hostkit ${info.hostkit_version}`;
+}
+
+/** What the badge says: nothing is judged before a step could be checked. */
+export function verdictOf(report) {
+  if (report.verdict === "refused") return "refused";
+  return report.checked === 0 ? "waiting" : report.verdict;
+}
+
+export function showHead(snapshot) {
+  const { report, device } = snapshot;
+  const chip = byId("port-state");
+  text(chip, snapshot.port_state);
+  chip.className = `chip ${PORT_MARKS[snapshot.port_state] ?? ""}`;
+  text(byId("device-name"), deviceName(device));
+  text(byId("epoch"), snapshot.epoch);
+  text(byId("reconnects"), snapshot.reconnects ? `${snapshot.reconnects}× reconnected` : "");
+  text(byId("elapsed"), clock(snapshot.elapsed_s) + (snapshot.ended ? " · ended" : ""));
+  showVerdict(verdictOf(report), report.reasons ?? []);
+}
+
+function deviceName(device) {
+  if (device.system === null) return "not heard yet";
+  const version = device.version ? ` · ${device.version}` : "";
+  return `${device.system}/${device.component}${version}`;
+}
+
+function showVerdict(verdict, reasons) {
+  const said = verdict.toUpperCase();
+  text(byId("verdict"), said);
+  byId("verdict-box").dataset.verdict = verdict;
+  const title = `${said} · hostkit monitor`;
+  if (document.title !== title) document.title = title;
+  const list = byId("reasons");
+  const shown = reasons.length ? reasons : [why(verdict)];
+  if (list.dataset.shown === JSON.stringify(shown)) return;
+  list.dataset.shown = JSON.stringify(shown);
+  list.replaceChildren(...shown.map((reason) => element("li", { said: reason, title: reason })));
+}
+
+function why(verdict) {
+  if (verdict === "waiting") return "no step could be checked yet";
+  return verdict === "pass" ? "device and models agree" : "";
+}
