@@ -111,6 +111,7 @@ def test_a_station_sets_a_parameter_through_the_monitor(
         finally:
             monitor.send_signal(signal.SIGINT)
             out, err = monitor.communicate(timeout=30)
+            print(err[-2000:])
             station.close()
             plotter.close()
     result = json.loads(out)
