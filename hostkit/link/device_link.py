@@ -12,6 +12,7 @@ from hostkit.link.commands import CommandClient, CommandStatus
 from hostkit.link.decoder import Decoder, Frame, Source, digest_of
 from hostkit.link.encoder import Encoder
 from hostkit.link.exchange import MonotonicClock
+from hostkit.link.framing import FLAGS_AT, SIGNED
 from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_facts import ParameterFacts
 from hostkit.link.parameters import ParameterClient
@@ -95,6 +96,8 @@ class DeviceLink:
         self._latest: tuple[int, int] | None = None
         self._digest: str | None = None
         self._bytes = 0
+        self._signing = signing is not None
+        self._signed = False
         self._epoch = transport.epoch
 
     def __enter__(self) -> "DeviceLink":
@@ -154,7 +157,11 @@ class DeviceLink:
         self.parameters.request_all()
         self.wait(lambda: not self.parameters.listing, LISTING_S)
         if not self.parameters.complete:
-            error = self.parameters.listing_error or f"no list came in {LISTING_S:g} s"
+            error = (
+                self._unsigned()
+                or self.parameters.listing_error
+                or f"no list came in {LISTING_S:g} s"
+            )
             raise DeviceError(error)
         return tuple(sorted(self.parameters.entries.values(), key=lambda entry: entry.index))
 
@@ -228,6 +235,7 @@ class DeviceLink:
     def _take(self, frame: Frame) -> None:
         if self._system not in (None, frame.source[0]):
             return
+        self._signed = self._signed or bool(frame.raw[FLAGS_AT] & SIGNED)
         if frame.name == "HEARTBEAT" and int(frame.message.type) != GROUND_STATION:
             if frame.source in self._heard or len(self._heard) < MOST_SOURCES:
                 self._heard[frame.source] += 1
@@ -266,7 +274,18 @@ class DeviceLink:
             )
         return next(iter(self._heard))
 
+    def _unsigned(self) -> str:
+        """Say why a device that signs does not answer us; nothing if that is not the reason."""
+        if self._signing or not self._signed:
+            return ""
+        return "the device signs its messages and hears signed ones only; give --signing-key"
+
     def _nobody(self) -> str:
+        if self._decoder.bad_signatures:
+            return (
+                f"{self._decoder.bad_signatures} messages were refused: they are not signed with "
+                "this key, or not newly; give the key that the device has"
+            )
         if self._system is not None and self._decoder.frames:
             return f"system {self._system} was not heard in {FIND_S:g} s, but others were"
         if self._decoder.frames:
