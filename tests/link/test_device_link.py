@@ -169,4 +169,4 @@ def test_a_flood_of_systems_fills_no_memory() -> None:
     link = DeviceLink(Stream(clock, lambda: flood), clock=clock)
     with pytest.raises(DeviceError, match=r"several systems .* \.\.\.\)"):
         link.find()
-    assert len(link._heard) <= 64
+    assert len(link._presence.heard) <= 64
