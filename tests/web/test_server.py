@@ -15,7 +15,7 @@ from served import running
 from sse import Listener, times
 
 from hostkit.errors import DeviceError, HostkitError
-from hostkit.web import protocol, server, stream, streaming
+from hostkit.web import binding, protocol, stream, streaming
 from hostkit.web.server import Server
 from hostkit.web.stream import MOST_CLIENTS
 
@@ -224,6 +224,23 @@ def test_other_machines_can_be_let_in(tmp_path: Path) -> None:
         s.stop()
 
 
+@pytest.mark.parametrize(
+    ("address", "allowed", "expected"),
+    [
+        ("127.0.0.1", (), ("127.0.0.1",)),
+        (
+            "::1",
+            ("Pi.local:80", "fe80::1", "[FE80::2]:5"),
+            ("[::1]", "pi.local", "[fe80::1]", "[fe80::2]"),
+        ),
+        ("0.0.0.0", (), ("127.0.0.1", "localhost", "[::1]")),
+        ("::", ("pi",), ("pi", "127.0.0.1", "localhost", "[::1]")),
+    ],
+)
+def test_names(address: str, allowed: tuple[str, ...], expected: tuple[str, ...]) -> None:
+    assert binding.names(address, allowed) == expected
+
+
 def has_ipv6() -> bool:
     try:
         with socket.socket(socket.AF_INET6) as probe:
@@ -381,4 +398,4 @@ def test_no_thread_is_left(tmp_path: Path) -> None:
 def test_kernel_holds_little_for_a_page_that_does_not_read(tmp_path: Path) -> None:
     with running(tmp_path) as (s, _):
         held = s._socket.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
-        assert held <= 2 * server.SEND_BUFFER_BYTES
+        assert held <= 2 * binding.SEND_BUFFER_BYTES
