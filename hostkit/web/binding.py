@@ -62,9 +62,14 @@ def _bound(
 def names(address: str, allowed: Iterable[str]) -> tuple[str, ...]:
     """Return the names of a server at an address, the best to show first, without ports."""
     further = tuple(_name(host) for host in allowed)
-    if ipaddress.ip_address(address).is_unspecified:
-        return (*further, *LOOPBACK_NAMES)
+    if is_any(address):
+        return (*further, *LOOPBACK_NAMES, _name(socket.gethostname()))
     return (_name(address), *further)
+
+
+def is_any(address: str) -> bool:
+    """Return whether a server at this address is at every address of the machine."""
+    return ipaddress.ip_address(address).is_unspecified
 
 
 def _name(host: str) -> str:

@@ -12,7 +12,7 @@ import uvicorn
 from hostkit.errors import DeviceError
 from hostkit.monitor.snapshot import Batch, Controls, Snapshot
 from hostkit.web.app import Reports, Served, application
-from hostkit.web.binding import listen, names
+from hostkit.web.binding import is_any, listen, names
 from hostkit.web.protocol import BoundedProtocol
 from hostkit.web.security import access
 from hostkit.web.stream import Hub
@@ -22,8 +22,9 @@ STOP_S = 2.0
 GRACE_S = 1
 HEADER_BYTES = 16384
 REMOTE_WARNING = (
-    "the page is open to the network at {host} without encryption: whoever listens can read its "
-    "token; `ssh -L {port}:127.0.0.1:{port} THIS_MACHINE` reaches it safely without this option"
+    "the page is open to the network at {host} without encryption: whoever listens in can read its "
+    "token and command the device; safer is 127.0.0.1 and, from the other machine, "
+    "`ssh -L {port}:127.0.0.1:{port} THIS_MACHINE`"
 )
 
 
@@ -67,7 +68,7 @@ class Server:
         self._socket = listen(host, port, allow_remote=allow_remote)
         address, self.port = self._socket.getsockname()[:2]
         self._names = names(address, allowed_hosts)
-        self._access = access(self.port, self._names)
+        self._access = access(self.port, self._names, any_address=is_any(address))
         self._hub = Hub(controls.info(), controls.snapshot())
         self._app = application(
             Served(

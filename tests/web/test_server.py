@@ -217,9 +217,12 @@ def test_other_machines_can_be_let_in(tmp_path: Path) -> None:
         assert url.startswith(f"http://bench.local:{s.port}/?token=")
         assert f"ssh -L {s.port}:127.0.0.1:{s.port}" in s.warning
         address = url.replace("bench.local", "127.0.0.1")
-        for host, status in (("bench.local", 303), ("127.0.0.1", 303), ("evil.example", 421)):
+        for host in ("bench.local", "127.0.0.1", "192.0.2.7", "[2001:db8::7]"):
             reply = httpx.get(address, headers={"host": f"{host}:{s.port}"})
-            assert reply.status_code == status
+            assert reply.status_code == 303
+        for host in ("evil.example", "192.0.2.7.evil.example", "2001:db8::7", "[192.0.2.7]", "[]"):
+            reply = httpx.get(address, headers={"host": f"{host}:{s.port}"})
+            assert reply.status_code == 421
     finally:
         s.stop()
 
@@ -233,11 +236,17 @@ def test_other_machines_can_be_let_in(tmp_path: Path) -> None:
             ("Pi.local:80", "fe80::1", "[FE80::2]:5"),
             ("[::1]", "pi.local", "[fe80::1]", "[fe80::2]"),
         ),
-        ("0.0.0.0", (), ("127.0.0.1", "localhost", "[::1]")),
-        ("::", ("pi",), ("pi", "127.0.0.1", "localhost", "[::1]")),
+        ("0.0.0.0", (), ("127.0.0.1", "localhost", "[::1]", "bench")),
+        ("::", ("pi",), ("pi", "127.0.0.1", "localhost", "[::1]", "bench")),
     ],
 )
-def test_names(address: str, allowed: tuple[str, ...], expected: tuple[str, ...]) -> None:
+def test_names(
+    address: str,
+    allowed: tuple[str, ...],
+    expected: tuple[str, ...],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(socket, "gethostname", lambda: "Bench")
     assert binding.names(address, allowed) == expected
 
 
