@@ -20,7 +20,8 @@ from hostkit.web.server import Server
 from hostkit.web.stream import MOST_CLIENTS
 
 WAIT_S = 10.0
-STOP_S = 2.0
+STOP_S = 3.0
+"""A little more than the server gives itself, for a busy machine."""
 
 
 def until(condition) -> None:
@@ -283,6 +284,13 @@ def raw(s: Server, data: bytes) -> bytes:
         return answer
 
 
+def served(s: Server) -> bool:
+    try:
+        return httpx.get(s.url).status_code == 303
+    except httpx.TransportError:
+        return False
+
+
 def closed(connection: socket.socket) -> bool:
     """Wait for the server to close a connection without an answer."""
     with connection:
@@ -333,7 +341,7 @@ def test_malformed_requests_are_refused_and_others_served(tmp_path: Path) -> Non
 def test_half_requests_are_let_go_while_others_are_served(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(protocol, "REQUEST_S", 0.3)
+    monkeypatch.setattr(protocol, "REQUEST_S", 1.0)
     with running(tmp_path) as (s, client), Listener(client) as listener:
         slow = [socket.create_connection(("127.0.0.1", s.port)) for _ in range(30)]
         for connection in slow:
@@ -354,7 +362,7 @@ def test_number_of_connections_is_bounded(tmp_path: Path, monkeypatch: pytest.Mo
         assert closed(opened[-1])
         for connection in opened:
             connection.close()
-        until(lambda: httpx.get(s.url).status_code == 303)
+        until(lambda: served(s))
 
 
 def test_a_body_that_never_comes_holds_up_nobody(
