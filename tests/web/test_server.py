@@ -6,9 +6,11 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
 from fake_session import FakeControls, FakeReports, Feed, batch, snapshot
 from served import running
@@ -186,6 +188,15 @@ def test_what_was_taken_before_the_end_is_still_sent(tmp_path: Path) -> None:
         assert listener.ended()
         assert [event.kind for event in listener.events[-3:]] == ["samples", "snapshot", "end"]
         assert client.get("/report.json").status_code == 200
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_failure_of_the_stream_is_no_silent_page(tmp_path: Path) -> None:
+    with running(tmp_path) as (s, client), Listener(client) as listener:
+        listener.wait(lambda events: bool(events))
+        s.take_batch(replace(batch(0, 3), device_rad=np.zeros((3, 0))))
+        assert listener.ended()
+        until(lambda: not s._thread.is_alive())
 
 
 def test_busy_port_is_told(tmp_path: Path) -> None:
