@@ -1,23 +1,29 @@
 // Figures of the verdict, of the link and of the device.
 
-import { byId, pairs, table, text } from "./dom.js";
-import { bytes, clock, count, degrees, fixed, withUnit } from "./format.js";
+import { byId, element, pairs, table, text } from "./dom.js";
+import { bytes, clock, count, degrees, figure, fixed, withUnit } from "./format.js";
 
 const bad = (value) => (value > 0 ? "bad" : "");
 const warn = (value) => (value > 0 ? "warn" : "");
 
+const FIGURES = [
+  ["RMS °", (axis) => degrees(axis.rms_deg)],
+  ["Mean °", (axis) => degrees(axis.mean_deg)],
+  ["Median size °", (axis) => degrees(axis.p50_deg)],
+  ["95 % below °", (axis) => degrees(axis.p95_deg)],
+  ["99 % below °", (axis) => degrees(axis.p99_deg)],
+  ["Largest °", (axis) => degrees(axis.max_deg)],
+  ["Lag ms", (axis) => (axis.lag_s === null ? "–" : fixed(axis.lag_s * 1000, 1))],
+  ["Drift °/min", (axis) => (axis.drift_deg_s === null ? "–" : degrees(axis.drift_deg_s * 60))],
+];
+
 export function showFigures(report) {
-  const rows = (report.residual ?? []).map((axis) => [
-    axis.axis,
-    degrees(axis.rms_deg),
-    degrees(axis.p95_deg),
-    degrees(axis.max_deg),
-    axis.lag_s === null ? "–" : fixed(axis.lag_s * 1000, 1),
-    axis.drift_deg_s === null ? "–" : degrees(axis.drift_deg_s * 60),
-  ]);
-  if (!rows.length) rows.push(["all", degrees(report.rms_deg), "–", degrees(report.max_deg), "–", "–"]);
-  const headings = ["", "RMS °", "p95 °", "max °", "lag ms", "°/min"];
-  table(byId("figures"), headings, rows);
+  const axes = report.residual ?? [];
+  const rows = FIGURES.map(([name, said]) => [name, ...axes.map(said)]);
+  if (!axes.length) {
+    rows.splice(0, Infinity, ["RMS °", degrees(report.rms_deg)], ["Largest °", degrees(report.max_deg)]);
+  }
+  table(byId("figures"), ["", ...(axes.length ? axes.map(({ axis }) => axis) : ["all"])], rows);
   pairs(byId("counts"), [
     ["Samples", count(report.samples)],
     ["Checked", count(report.checked)],
@@ -26,6 +32,18 @@ export function showFigures(report) {
     ["Late", count(report.late), warn(report.late)],
     ["Unjudged", count(report.unjudged), warn(report.unjudged)],
   ]);
+  showRetuned(report.retuned ?? []);
+}
+
+function showRetuned(retuned) {
+  const lines = retuned.map(({ name, device_value, design_value, unit }) =>
+    `${name} ${withUnit(figure(device_value), unit)}, design ${figure(design_value)}`);
+  const list = byId("retuned-list");
+  while (list.children.length > lines.length) list.lastChild.remove();
+  lines.forEach((said, index) => {
+    if (!list.children[index]) list.append(element("li"));
+    text(list.children[index], said);
+  });
 }
 
 export function showLink(snapshot) {
@@ -49,6 +67,18 @@ export function showLink(snapshot) {
     ...optional("Page missed", snapshot.missed_batches),
   ]);
   showSources(link.sources ?? []);
+  showForwards(snapshot.forwards ?? []);
+}
+
+function showForwards(forwards) {
+  byId("forwards").hidden = !forwards.length;
+  const rows = forwards.slice(0, 20).map((place) => [
+    place.address,
+    count(place.sent_frames),
+    count(place.dropped_frames),
+    count(place.received_frames),
+  ]);
+  table(byId("forwards"), ["Forwarded to", "sent", "dropped", "back"], rows);
 }
 
 function optional(name, value) {

@@ -1,28 +1,29 @@
-// Which line is which, and what it says under the pointer.
+// Which line is which, and what the samples under the pointer are.
 
 import { byId, element, text } from "./dom.js";
-import { angle } from "./format.js";
+import { angle, degrees, fixed } from "./format.js";
 
 export class Legend {
   constructor(axes) {
-    this.entries = axes.flatMap((axis) => [this.entry(axis, "device"), this.entry(axis, "model")]);
+    this.axes = axes;
+    this.readout = byId("readout");
+    for (const axis of axes) this.entry(axis, axis);
+    this.entry("dashed", "model");
   }
 
-  entry(axis, kind) {
+  entry(swatch, said) {
     const line = element("li");
-    const value = element("span", { className: "value" });
-    line.append(
-      element("i", { className: `swatch ${kind === "model" ? "dashed" : axis}` }),
-      element("span", { said: `${axis} ${kind}` }),
-      value,
-    );
+    line.append(element("i", { className: `swatch ${swatch}` }), element("span", { said }));
     byId("legend").append(line);
-    return { axis, kind, value };
   }
 
-  show(sample) {
-    for (const { axis, kind, value } of this.entries) {
-      text(value, sample ? `${angle(sample[axis][kind])}°` : "");
-    }
+  show(sample, time) {
+    this.readout.hidden = !sample;
+    if (!sample) return;
+    const parts = this.axes.map((axis) => {
+      const { device, residual } = sample[axis];
+      return `${axis} ${angle(device)}°, residual ${degrees(residual)}°`;
+    });
+    text(this.readout, [`${fixed(time, 3)} s`, ...parts].join(" · "));
   }
 }
