@@ -7,10 +7,12 @@ import click
 
 from hostkit.cli.inputs import JSON, say
 from hostkit.cli.output import emit_json
-from hostkit.flashing import PROGRAMMERS, plan_flash
+from hostkit.flashing import PROGRAMMERS, FlashPlan, plan_flash
 from hostkit.flashing import flash as run_flash
 from hostkit.flashing.loading import BOOT_BAUD
+from hostkit.link.lease import borrow_port
 from hostkit.render import target_of
+from hostkit.targets import Target
 
 NAMES = tuple(dict.fromkeys(way.name for way in PROGRAMMERS))
 
@@ -57,7 +59,7 @@ def flash(
     plan = plan_flash(folder, target, port=port, programmer=programmer, boot_baud=boot_baud)
     say(f"in {folder}: {shlex.join(plan.command)}")
     if not dry_run:
-        run_flash(plan, target, build_first=not no_build)
+        _load(plan, target, build_first=not no_build)
     if as_json:
         emit_json(
             {
@@ -70,3 +72,14 @@ def flash(
         )
     elif not dry_run:
         click.echo(f"{target.name}: loaded by {plan.programmer.name}")
+
+
+def _load(plan: FlashPlan, target: Target, *, build_first: bool) -> None:
+    """Load the board, with its port to oneself if another hostkit process is watching it."""
+    if plan.port is None or plan.programmer.port_use == "drive":
+        run_flash(plan, target, build_first=build_first)
+        return
+    with borrow_port(plan.port) as borrowed:
+        if borrowed:
+            say(f"another hostkit process has released {plan.port} and takes it again afterwards")
+        run_flash(plan, target, build_first=build_first)

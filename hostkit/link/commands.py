@@ -118,11 +118,11 @@ class CommandClient:
         self._transmit(self.target)
 
     def take(self, frame: Frame) -> None:
-        """Take any frame that came; those that are no answer are passed over."""
+        """Take any frame that came; copies and those that are no answer are passed over."""
         if self.target is None and frame.name == "TILT_SAMPLE":
             self.target = frame.source
         state = self.state
-        if frame.name != "COMMAND_ACK" or frame.source != self.target:
+        if frame.name != "COMMAND_ACK" or frame.source != self.target or frame.repeated:
             return
         if state is None or state.over or not self._is_answer(frame, state.name):
             return

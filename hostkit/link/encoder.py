@@ -4,6 +4,7 @@ from typing import Any
 
 from hostkit.dialect import python_module
 from hostkit.link.exchange import STATION
+from hostkit.link.signing import SigningKey, sign_with
 
 
 class Encoder:
@@ -19,15 +20,13 @@ class Encoder:
 
     def __init__(
         self,
-        signing: Any = None,
+        signing: SigningKey | None = None,
         *,
         system_id: int = STATION[0],
         component_id: int = STATION[1],
     ) -> None:
         self._mav = python_module().MAVLink(None, srcSystem=system_id, srcComponent=component_id)
         if signing is not None:
-            from hostkit.link.signing import sign_with  # type: ignore
-
             sign_with(self._mav, signing)
 
     def pack(self, message: Any) -> bytes:

@@ -1,6 +1,5 @@
 """What asks a device and waits for its answer: how it sends, and what time it goes by."""
 
-import time
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -19,11 +18,3 @@ class MonotonicClock(Protocol):
 
     def monotonic(self) -> float:
         """Return seconds since some moment."""
-
-
-class MachineClock:
-    """The clock of the machine."""
-
-    def monotonic(self) -> float:
-        """Return seconds since some moment."""
-        return time.monotonic()

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 from hostkit.link.addresses import open_udp, resolve_udp
+from hostkit.link.clock import SystemClock
 from hostkit.link.decoder import Decoder
-from hostkit.link.exchange import MachineClock, MonotonicClock
+from hostkit.link.exchange import MonotonicClock
 
 DATAGRAMS_PER_POLL = 64
 LARGEST_DATAGRAM_BYTES = 4096
@@ -57,7 +58,7 @@ class Forwarder:
     def __init__(self, address: str, *, clock: MonotonicClock | None = None) -> None:
         self._socket = open_udp(resolve_udp(address))
         self._address = address
-        self._clock = MachineClock() if clock is None else clock
+        self._clock = SystemClock() if clock is None else clock
         self._decoder = Decoder()
         self._sent = self._dropped = self._received = self._refused = 0
         self._refused_bytes = 0
@@ -115,7 +116,8 @@ class Forwarder:
     def _frames_of(self, datagram: bytes) -> list[bytes]:
         """Return the frames of a datagram that the device may have."""
         found = [frame.raw for frame in self._decoder.feed(datagram)]
-        self._refused_bytes += max(0, len(datagram) - sum(map(len, found)))
+        self._decoder.begin_epoch()  # a frame does not go on in the next datagram
+        self._refused_bytes += len(datagram) - sum(map(len, found))
         passed = []
         for raw in found:
             if len(raw) > self._allowed_bytes:

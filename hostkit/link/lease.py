@@ -24,6 +24,8 @@ ASK, GRANTED, REFUSED = b"release\n", b"released\n", b"refused\n"
 POLL_S = 0.2
 ANSWER_S = 10.0
 JOIN_S = 2.0
+FOLDER_BYTES = 70
+"""The path of a socket may have about 100 bytes; a longer folder is not used."""
 
 
 class LeasablePort(Protocol):
@@ -44,12 +46,10 @@ def lease_folder() -> Path | None:
     """Return the folder of the sockets, made if it is not there; None if there is no safe one."""
     if not hasattr(socket, "AF_UNIX") or not hasattr(os, "getuid"):
         return None
-    runtime = os.environ.get("XDG_RUNTIME_DIR")
-    folder = (
-        Path(runtime) / "hostkit"
-        if runtime and Path(runtime).is_dir()
-        else Path(tempfile.gettempdir()) / f"hostkit-{os.getuid()}"
-    )
+    folder = Path(tempfile.gettempdir()) / f"hostkit-{os.getuid()}"
+    runtime = Path(os.environ.get("XDG_RUNTIME_DIR") or "/nonexistent")
+    if runtime.is_dir() and len(os.fsencode(runtime)) < FOLDER_BYTES:
+        folder = runtime / "hostkit"
     try:
         with contextlib.suppress(FileExistsError):
             folder.mkdir(mode=0o700)
@@ -66,7 +66,7 @@ def socket_path(device: str) -> Path | None:
     if folder is None:
         return None
     real = str(Path(device).resolve())
-    return folder / f"{hashlib.sha256(real.encode()).hexdigest()[:24]}.sock"
+    return folder / f"{hashlib.sha256(real.encode()).hexdigest()[:16]}.sock"
 
 
 def offer_port(port: LeasablePort, device: Callable[[], str]) -> Callable[[], None]:

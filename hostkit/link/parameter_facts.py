@@ -66,7 +66,7 @@ class ParameterFacts:
         but = f" but not {FORBIDDEN_SYSTEM}" if self.name == "SYS_ID" else ""
         number = "whole numbers from " if self.whole else ""
         unit = f" {self.unit}" if self.unit else ""
-        return f"{number}{self.lowest:.9g} to {self.highest:.9g}{unit}{but}"
+        return f"{number}{self.lowest:.7g} to {self.highest:.7g}{unit}{but}"
 
 
 _OWN: Final = (

@@ -1,54 +1,25 @@
 """The parameters of a device: read, set, and told back, whatever the link does meanwhile."""
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Final
-
-import numpy as np
 
 from hostkit.dialect import python_module
 from hostkit.errors import HostkitError
 from hostkit.link.decoder import Frame, Source
 from hostkit.link.exchange import MonotonicClock, Send
 from hostkit.link.listing import MOST_PARAMETERS, Listing
+from hostkit.link.parameter_entry import ParameterEntry, as_real32, is_name, near
 from hostkit.link.parameter_facts import ParameterFacts, parameter_facts
+
+__all__ = ["ParameterClient", "ParameterEntry"]
 
 ANSWER_WAIT_S = 0.5
 TRIES = 4
 """How often a value is sent until it is given up."""
 
-NEAR_RELATIVE = 1e-4
-NEAR_ABSOLUTE = 2e-6
-"""What a device may round a value by, and it still counts as the value that was asked for."""
-
 REAL32 = 9
-_NAME: Final = re.compile(r"[!-~]{1,16}\Z")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterEntry:
-    """One parameter as the device told it.
-
-    Attributes
-    ----------
-    value
-        What is in use.
-    index
-        Its number in the device's list.
-    wanted
-        What it was asked to use and has not answered yet.
-    error
-        Why the last setting did not take, or why what it told was refused; else empty.
-    """
-
-    name: str
-    value: float
-    index: int
-    wanted: float | None = None
-    error: str = ""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -164,7 +135,7 @@ class ParameterClient:
         HostkitError
             If the device has no such parameter, or the value is no finite number of 32 bits.
         """
-        if _NAME.match(name) is None:
+        if not is_name(name):
             raise HostkitError(f"{name!r} is no name of a parameter: 1 to 16 printable characters")
         if self.complete and name not in self._entries:
             raise HostkitError(
@@ -178,15 +149,15 @@ class ParameterClient:
         self._note(name, wanted=number, error="")
 
     def take(self, frame: Frame) -> None:
-        """Take any frame that came; those that are not of the device are passed over."""
+        """Take any frame that came; copies and those that are not of the device are passed over."""
         if self.target is None and frame.name == "TILT_SAMPLE":
             self.target = frame.source
-        if frame.name != "PARAM_VALUE" or frame.source != self.target:
+        if frame.name != "PARAM_VALUE" or frame.source != self.target or frame.repeated:
             return
         message = frame.message
         name, value = str(message.param_id), float(message.param_value)
         index, count = int(message.param_index), int(message.param_count)
-        if _NAME.match(name) is None or not self._has_room(name):
+        if not is_name(name) or not self._has_room(name):
             self.refused += 1
             return
         self._listing.take(index, count, self._clock.monotonic())
@@ -294,23 +265,3 @@ class ParameterClient:
         entry = self._entries.get(name)
         if entry is not None:
             self._entries[name] = replace(entry, wanted=wanted, error=error)
-
-
-def near(told: float, asked: float) -> bool:
-    """Tell whether one value is the other, but for what a device rounds it by."""
-    return math.isclose(told, asked, rel_tol=NEAR_RELATIVE, abs_tol=NEAR_ABSOLUTE)
-
-
-def as_real32(name: str, value: float) -> float:
-    """Return the number of 32 bits that goes over the link.
-
-    Raises
-    ------
-    HostkitError
-        If there is none that is finite.
-    """
-    with np.errstate(over="ignore"):
-        number = float(np.float32(value))
-    if not math.isfinite(number):
-        raise HostkitError(f"{name} = {value} is no finite number of 32 bits")
-    return number

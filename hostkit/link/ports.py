@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from glob import glob
 from pathlib import Path
 
@@ -65,8 +65,25 @@ Listing = Callable[[], tuple[PortInfo, ...]]
 
 
 def list_ports() -> tuple[PortInfo, ...]:
-    """Return the serial ports of this machine in the order of their names; none is opened."""
+    """Return the serial ports of this machine in the order of their names; none is opened.
+
+    Access and use are not looked up; see :func:`with_use`.
+    """
     return tuple(_info(found) for found in sorted(comports()))
+
+
+def port_info(device: str) -> PortInfo:
+    """Return what is known of a port by its name, which may be a link or a pseudo-terminal."""
+    real = Path(device).resolve()
+    for port in list_ports():
+        if Path(port.device).resolve() == real:
+            return replace(port, device=device)
+    return PortInfo(device=device)
+
+
+def with_use(port: PortInfo) -> PortInfo:
+    """Return a port with its access and its user."""
+    return replace(port, access=access_of(port.device), used_by=user_of(port.device))
 
 
 def _info(found: object) -> PortInfo:
@@ -83,8 +100,6 @@ def _info(found: object) -> PortInfo:
         manufacturer=_printable(getattr(found, "manufacturer", None)) or None,
         known_as="" if vid is None or pid is None else board_of(vid, pid),
         candidate=vid is not None and not Path(device).name.startswith("ttyS"),
-        access=access_of(device),
-        used_by=user_of(device),
     )
 
 

@@ -51,6 +51,7 @@ class Reconnecting:
     ) -> None:
         self._opener = opener
         self._keep = keep
+        self._waiting = keep
         self._clock = clock or SystemClock()
         self._inner: Transport | None = first or opener()
         self._wait_s = FIRST_WAIT_S
@@ -68,7 +69,7 @@ class Reconnecting:
                 return data
             self._lose()
             return b"" if self._keep else None
-        if self.state == "lost" and not self._keep:
+        if self.state == "lost" and not self._waiting:
             return None
         self._pass_time(timeout_s)
         return b""
@@ -76,6 +77,7 @@ class Reconnecting:
     def _lose(self) -> None:
         self._shut()
         self.state = "lost"
+        self._waiting = self._keep
         self._wait_s = FIRST_WAIT_S
         self._due_s = self._clock.monotonic() + self._wait_s
 
@@ -118,6 +120,7 @@ class Reconnecting:
         if self.state != "released":
             return
         self.state = "lost"
+        self._waiting = True
         self._wait_s = FIRST_WAIT_S
         self._attempt()
 

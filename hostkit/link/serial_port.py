@@ -9,6 +9,7 @@ import serial
 
 from hostkit.errors import DeviceError
 from hostkit.link.port import WRITE_TIMEOUT_S, PortState
+from hostkit.link.port_use import user_of
 
 FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, ValueError)
 with contextlib.suppress(ImportError):
@@ -107,5 +108,6 @@ def explain(port: str, error: Exception) -> str:
             "usually `sudo usermod -aG dialout $USER`, then log in again"
         )
     if number in (errno.EBUSY, errno.EAGAIN) or "lock" in str(error).lower():
-        return f"port {port} is in use by another program; close it there first"
+        user = user_of(port) or "another program"
+        return f"port {port} is in use by {user}; close it there first"
     return f"port {port} cannot be opened: {error}"

@@ -13,7 +13,7 @@ from hostkit.link.parameter_facts import ParameterFacts, parameter_facts
 from hostkit.link.parameters import ParameterClient, ParameterEntry
 from hostkit.link.transport import Transport
 from hostkit.monitor.notices import Notices
-from hostkit.monitor.snapshot import CommandState, ParameterState
+from hostkit.monitor.snapshot import CommandState, Level, ParameterState
 from hostkit.records import FilterDesign
 
 HEARTBEAT_EVERY_S = 1.0
@@ -163,7 +163,7 @@ class Conversation:
         self._command_told = state
         if state.state in ("waiting", "in progress"):
             return
-        level = "info" if state.state == "accepted" else "error"
+        level: Level = "info" if state.state == "accepted" else "error"
         detail = f": {state.detail}" if state.detail else ""
         self._notices.add(level, f"{state.name}: {state.state}{detail}")
         if state.state == "accepted" and state.name in (CALIBRATED, "defaults"):

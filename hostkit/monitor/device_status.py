@@ -1,7 +1,10 @@
 """What the devices on a link say of themselves, cleaned for showing."""
 
 from collections import deque
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hostkit.dialect import python_module
 from hostkit.link.decoder import Frame, Source
@@ -14,6 +17,7 @@ MOST_SOURCES = 16
 """Senders whose state is kept; a hostile stream may claim all 65025."""
 
 US_PER_S = 1e6
+TOLD_BY = frozenset(("HEARTBEAT", "SYS_STATUS", "STATUSTEXT", "AUTOPILOT_VERSION"))
 UNKNOWN_LOAD = 0xFFFF
 
 
@@ -23,7 +27,10 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in line).strip()
 
 
-def deg_c(raw: int) -> float:
+Raw = TypeVar("Raw", float, NDArray[np.float64])
+
+
+def deg_c(raw: Raw) -> Raw:
     """Return the temperature that a TILT_SAMPLE tells, degrees Celsius."""
     return raw / TEMPERATURE_COUNTS_PER_DEG_C + TEMPERATURE_OFFSET_DEG_C
 
@@ -38,14 +45,17 @@ class DeviceWatch:
         self._load_percent: float | None = None
         self._healthy: bool | None = None
         self._texts: deque[str] = deque(maxlen=TEXTS_KEPT)
-        self._sample: Any = None
+        self._sample: Frame | None = None
 
     def take(self, frame: Frame) -> None:
         """Take any message of this sender."""
-        message = frame.message
         if frame.name == "TILT_SAMPLE":
-            self._sample = message
-        elif frame.name == "HEARTBEAT":
+            self._sample = frame
+            return
+        if frame.name not in TOLD_BY:
+            return
+        message = frame.message
+        if frame.name == "HEARTBEAT":
             self._state = _state_name(message.system_status)
         elif frame.name == "SYS_STATUS":
             self._take_health(message)
@@ -68,14 +78,14 @@ class DeviceWatch:
 
     def status(self) -> DeviceStatus:
         """Return all that was said."""
-        sample = self._sample
+        sample = None if self._sample is None else self._sample.message
         return DeviceStatus(
             system=self._source[0],
             component=self._source[1],
             state=self._state,
             version=self._version,
             uptime_s=None if sample is None else sample.time_usec / US_PER_S,
-            temperature_deg_c=None if sample is None else deg_c(sample.temperature),
+            temperature_deg_c=None if sample is None else deg_c(float(sample.temperature)),
             load_percent=self._load_percent,
             healthy=self._healthy,
             bus_errors=None if sample is None else sample.i2c_errors,

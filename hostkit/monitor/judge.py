@@ -1,26 +1,50 @@
 """Picking the samples of one device out of a stream and holding them against the models."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hostkit.design_file import digest
-from hostkit.link.decoder import Frame, Source, digest_of, is_retuned, trace_of
+from hostkit.link.decoder import Frame, Source, digest_of, trace_of
+from hostkit.link.samples import payloads
+from hostkit.monitor.device_status import US_PER_S
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.snapshot import Batch
-from hostkit.records import AXES, FilterDesign
-from hostkit.validation import Validator
+from hostkit.records import AXES, FilterDesign, ValidationReport
+from hostkit.validation import Judged, Thresholds, Validator
 
 MOST_OTHERS = 8
 """Other devices that are told of; a hostile stream may claim any number."""
 
-US_PER_S = 1e6
-RESET_US = 1_000_000
-"""A device whose time goes back by more than this has started anew."""
+PARAMETER = "PARAM_VALUE"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """Judged samples whose device time rises.
+
+    Attributes
+    ----------
+    time_us
+        Device time, shape ``(N,)``.
+    anew
+        Whether the device itself began anew with them.
+    """
+
+    batch: Batch
+    time_us: NDArray[np.int64]
+    anew: bool
 
 
 class Judge:
     """Follows the first device that sends samples, or the one of a given system.
+
+    Parameters
+    ----------
+    as_designed
+        Whether a device with other parameters than those of its design is refused.
 
     Attributes
     ----------
@@ -28,41 +52,63 @@ class Judge:
         Whose samples are judged; None until one came.
     other_digest
         Digest of the design that the device runs, if it is another one.
-    retuned
-        Whether the device was refused because of its parameters.
     epoch
         Rises whenever device time begins anew.
     """
 
     def __init__(
-        self, design: FilterDesign, validator: Validator, notices: Notices, system: int | None
+        self,
+        design: FilterDesign,
+        validator: Validator,
+        notices: Notices,
+        *,
+        system: int | None = None,
+        as_designed: bool = False,
     ) -> None:
-        self._design, self.validator = design, validator
-        self._notices, self._system = notices, system
-        self._digest = digest(design)
+        self._axes = AXES[design.axes]
+        self._validator, self._notices = validator, notices
+        self._system, self._as_designed = system, as_designed
+        self._digest = np.frombuffer(bytes.fromhex(digest(design)), dtype=np.uint8)
+        self._period_s = design.period_s
         self._others: set[Source] = set()
-        self._origin_us: int | None = None
-        self._offset_s = 0.0
-        self._newest_us = 0
+        self._newest_us: int | None = None
         self._newest_s = 0.0
+        self._is_retuned = False
         self.source: Source | None = None
         self.other_digest: str | None = None
-        self.retuned = False
         self.epoch = 0
         self.samples = 0
 
     @property
     def refused(self) -> bool:
         """Whether the device cannot be judged."""
-        return self.other_digest is not None or self.retuned
+        return self.other_digest is not None or (self._as_designed and self._is_retuned)
+
+    def report(self, thresholds: Thresholds) -> ValidationReport:
+        """Give the verdict so far."""
+        return self._validator.report(thresholds, other_digest=self.other_digest)
 
     def begin_epoch(self) -> None:
         """Take the next sample for the first: the port was opened anew, or the replay moved."""
         self.epoch += 1
-        self._origin_us = None
-        self.other_digest, self.retuned = None, False
+        self._newest_us = None
+        self.other_digest, self._is_retuned = None, False
+        self._validator.begin_epoch()
 
-    def take(self, frames: list[Frame], received_s: float, position_s: float) -> Iterator[Batch]:
+    def restart(self) -> None:
+        """Forget the figures so far."""
+        self._validator.restart()
+        self.other_digest, self._is_retuned = None, False
+
+    def tell(self, frames: list[Frame]) -> None:
+        """Take parameters that the device told earlier."""
+        for frame in frames:
+            if frame.name == PARAMETER and frame.source == self.source:
+                self._told(frame)
+
+    def take(
+        self, frames: list[Frame], received_s: float, position_s: Callable[[], float]
+    ) -> Iterator[Stretch]:
         """Judge the samples among some frames.
 
         Parameters
@@ -70,47 +116,67 @@ class Judge:
         received_s
             Host time of arrival, s since 1970.
         position_s
-            Where the time axis stands, s: what is shown first in a new epoch is put there.
+            Where the time axis stands, s: what comes first in a new epoch is shown there.
         """
-        samples = [frame for frame in frames if self._is_ours(frame)]
-        good = []
-        for frame in samples:
-            if digest_of(frame) != self._digest:
-                self.other_digest = digest_of(frame)
-                break
-            if is_retuned(frame):
-                self.retuned = True
-                break
-            good.append(frame)
-        if self.refused or not good:
-            return
-        self.samples += len(good)
-        hidden_words = len(self.validator.spec.hidden)
-        trace = trace_of(good, AXES[self._design.axes], hidden_words=hidden_words)
-        residual = self.validator.add(trace)
-        device = trace.state_raw[:, : residual.shape[1]] * self.validator.spec.state_per_unit[0]
-        flags = np.zeros(len(trace), dtype=np.bool_)
-        yield Batch(
-            time_s=self._time_s(trace.time_us, position_s),
-            received_s=received_s,
-            device_rad=device,
-            model_rad=device - residual,
-            residual_rad=residual,
-            mismatch=flags,
-            begins=flags.copy(),
-        )
+        run: list[Frame] = []
+        for frame in frames:
+            if self._is_ours(frame):
+                run.append(frame)
+            elif frame.name == PARAMETER and frame.source == self.source and not frame.repeated:
+                yield from self._judge(run, received_s, position_s)
+                run = []
+                self._told(frame)
+        yield from self._judge(run, received_s, position_s)
 
-    def _time_s(self, time_us: np.ndarray, position_s: float) -> np.ndarray:
-        if self._origin_us is None or time_us[0] < self._newest_us - RESET_US:
-            if self._origin_us is not None:
-                self.epoch += 1
-                self._notices.add("warning", "the device has started anew")
-            self._origin_us = int(time_us[0])
-            self._offset_s = position_s
-        self._newest_us = int(time_us[-1])
-        time_s = self._offset_s + (time_us - self._origin_us) / US_PER_S
-        self._newest_s = float(time_s[-1])
-        return time_s
+    def _judge(
+        self, run: list[Frame], received_s: float, position_s: Callable[[], float]
+    ) -> Iterator[Stretch]:
+        if not run or self.refused:
+            return
+        others = np.flatnonzero((payloads(run)["digest"] != self._digest).any(axis=1))
+        if len(others):
+            self.other_digest = digest_of(run[others[0]])
+            run = run[: others[0]]
+        hidden_words = len(self._validator.spec.hidden)
+        trace = trace_of(run, self._axes, hidden_words=hidden_words)
+        self._is_retuned |= trace.retuned is not None and bool(trace.retuned.any())
+        self.samples += len(run)
+        if self._as_designed and self._is_retuned:
+            self._validator.add(trace)
+            return
+        judged = self._validator.add(trace)
+        for part in _rising(judged.time_us):
+            yield self._stretch(judged, part, received_s, position_s)
+
+    def _stretch(
+        self, judged: Judged, part: slice, received_s: float, position_s: Callable[[], float]
+    ) -> Stretch:
+        time_us = judged.time_us[part]
+        first_us = int(time_us[0])
+        anew = self._newest_us is not None and first_us < self._newest_us
+        if self._newest_us is None:
+            begin_s = position_s()
+        elif anew:
+            self.epoch += 1
+            self._notices.add("warning", "the device has started anew")
+            begin_s = max(position_s(), self._newest_s + self._period_s)
+        else:
+            begin_s = self._newest_s + (first_us - self._newest_us) / US_PER_S
+        time_s = begin_s + (time_us - first_us) / US_PER_S
+        self._newest_us, self._newest_s = int(time_us[-1]), float(time_s[-1])
+        batch = Batch(
+            time_s=time_s,
+            received_s=received_s,
+            device_rad=judged.device_rad[part],
+            model_rad=judged.model_rad[part],
+            residual_rad=judged.residual_rad[part],
+            mismatch=judged.mismatch[part],
+            begins=judged.begins[part],
+        )
+        return Stretch(batch=batch, time_us=time_us, anew=anew)
+
+    def _told(self, frame: Frame) -> None:
+        self._validator.told(str(frame.message.param_id), float(frame.message.param_value))
 
     def _is_ours(self, frame: Frame) -> bool:
         if frame.name != "TILT_SAMPLE":
@@ -132,3 +198,12 @@ class Judge:
             f"system {source[0]}, component {source[1]} sends samples too; they are passed over "
             f"(--system {source[0]} takes them)",
         )
+
+
+def _rising(time_us: NDArray[np.int64]) -> list[slice]:
+    """Return the stretches in which time does not go back."""
+    if not len(time_us):
+        return []
+    breaks = np.flatnonzero(np.diff(time_us) < 0) + 1
+    ends = [*breaks.tolist(), len(time_us)]
+    return [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]

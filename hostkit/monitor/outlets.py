@@ -58,5 +58,7 @@ class Outlets:
 
     def close(self) -> None:
         """Close all sockets."""
-        for outlet in (*self.forwarders, *self.plotters):
-            outlet.close()
+        for forwarder in self.forwarders:
+            forwarder.close()
+        for plotter in self.plotters:
+            plotter.close()

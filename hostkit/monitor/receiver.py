@@ -1,6 +1,6 @@
 """Everything that comes from a port: bytes, frames, and what became of the port meanwhile."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hostkit.link.clock import Clock
 from hostkit.link.decoder import Decoder, Frame
@@ -51,6 +51,7 @@ class Receiver:
         self._epoch, self._state = transport.epoch, transport.state
         self._left_s = 0.0
         self._overrun_bytes = 0
+        self._understood = False
         self.reconnects = 0
         self.heard = b""
 
@@ -61,10 +62,12 @@ class Receiver:
         if data is None:
             return Received(frames=[], ended=True, opened_anew=opened_anew)
         if opened_anew:
-            getattr(self.decoder, "begin_epoch", lambda: None)()
-        if not self.decoder.frames:
+            self.decoder.begin_epoch()
+        if not self._understood:
             self.heard = (self.heard + data)[-HEARD_BYTES:]
-        return Received(frames=self.decoder.feed(data), opened_anew=opened_anew)
+        frames = self.decoder.feed(data)
+        self._understood = self._understood or bool(frames)
+        return Received(frames=frames, opened_anew=opened_anew)
 
     def _follow_port(self) -> bool:
         """Compare the port with what it was; tell whether it was opened anew."""
@@ -96,7 +99,8 @@ class Receiver:
 
     def statistics(self) -> LinkStatistics:
         """Return the account of the link."""
-        return self.decoder.statistics()
+        overrun_bytes = self._transport.overrun_bytes
+        return replace(self.decoder.statistics(), overrun_bytes=overrun_bytes)
 
     def explain_noise(self, waited_s: float) -> str:
         """Say what the bytes are that held no frame."""

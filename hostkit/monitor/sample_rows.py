@@ -8,12 +8,16 @@ from numpy.typing import NDArray
 from hostkit.design_file import digest
 from hostkit.errors import HostkitError
 from hostkit.link.decoder import Frame, Source, digest_of
+from hostkit.link.samples import payloads
 from hostkit.monitor.device_status import US_PER_S, deg_c
 from hostkit.recordings.csv_file import ACCEL, GYRO
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
 from hostkit.units import STANDARD_GRAVITY_M_S2
+
+Vector = NDArray[np.float64]
+Payloads = np.ndarray[tuple[int], np.dtype[np.void]]
 
 COLUMNS = ("time_s", *GYRO, *ACCEL, "temp_c")
 RESET_US = 1_000_000
@@ -38,7 +42,7 @@ class SampleRows:
 
     def __init__(self, design: FilterDesign, system: int | None = None) -> None:
         self._design, self._system = design, system
-        self._digest = bytes.fromhex(digest(design))
+        self._digest = np.frombuffer(bytes.fromhex(digest(design)), dtype=np.uint8)
         self._source: Source | None = None
         self._period_us = US_PER_S / design.rate_hz
         self._origin_us = 0
@@ -46,7 +50,7 @@ class SampleRows:
         self._host_us = 0
         self.left_out = 0
 
-    def take(self, host_us: int, frames: Sequence[Frame]) -> NDArray[np.float64]:
+    def take(self, host_us: int, frames: Sequence[Frame]) -> Vector:
         """Return a row for each sample, its columns as in `COLUMNS`.
 
         Raises
@@ -55,42 +59,37 @@ class SampleRows:
             If the device runs another design.
         """
         good = [frame for frame in frames if self._is_ours(frame)]
-        kept, times_us = [], []
-        for frame in good:
-            time_us = self._time_us(int(frame.message.time_usec), host_us)
-            if time_us is None:
-                self.left_out += 1
-                continue
-            kept.append(frame.message)
-            times_us.append(time_us)
-        if not kept:
+        if not good:
             return np.empty((0, len(COLUMNS)))
-        return self._rows(kept, times_us)
+        read = payloads(good)
+        self._require_design(good, read)
+        times_us = [self._time_us(time_us, host_us) for time_us in read["time_usec"].tolist()]
+        kept = np.array([time_us is not None for time_us in times_us], dtype=np.bool_)
+        self.left_out += len(good) - int(kept.sum())
+        time_s = np.array([t for t in times_us if t is not None], dtype=np.float64) / US_PER_S
+        return self._rows(time_s, read[kept])
 
-    def _rows(self, messages: list[object], times_us: list[int]) -> NDArray[np.float64]:
-        counts = Counts(
-            accel=np.array([m.accel for m in messages], dtype=np.int64),  # type: ignore[attr-defined]
-            gyro=np.array([m.gyro for m in messages], dtype=np.int64),  # type: ignore[attr-defined]
-        )
+    def _rows(self, time_s: Vector, read: Payloads) -> Vector:
         sensor = self._design.sensor
+        counts = Counts(accel=read["accel"].astype(np.int64), gyro=read["gyro"].astype(np.int64))
         rate, force_g = to_rate_and_force_g(SENSORS[sensor.part], sensor, counts)
-        temperature = [deg_c(m.temperature) for m in messages]  # type: ignore[attr-defined]
-        time_s = np.array(times_us) / US_PER_S
+        temperature = deg_c(read["temperature"].astype(np.float64))
         return np.column_stack((time_s, rate, force_g * STANDARD_GRAVITY_M_S2, temperature))
+
+    def _require_design(self, frames: list[Frame], read: Payloads) -> None:
+        others = np.flatnonzero((read["digest"] != self._digest).any(axis=1))
+        if len(others):
+            raise HostkitError(
+                f"the device runs design {digest_of(frames[others[0]])}, not "
+                f"{digest(self._design)}: the ranges of its sensor are not known"
+            )
 
     def _is_ours(self, frame: Frame) -> bool:
         if frame.name != "TILT_SAMPLE":
             return False
         if self._source is None and self._system in (None, frame.source[0]):
             self._source = frame.source
-        if frame.source != self._source:
-            return False
-        if bytes(frame.message.digest) != self._digest:
-            raise HostkitError(
-                f"the device runs design {digest_of(frame)}, not {self._digest.hex()}: the ranges "
-                "of its sensor are not known"
-            )
-        return True
+        return frame.source == self._source
 
     def _time_us(self, device_us: int, host_us: int) -> int | None:
         """Return the time in the recording, or None for a sample that is late or came again."""

@@ -208,7 +208,8 @@ def test_tcp_device() -> None:
             connection, _ = server.accept()
             with connection:
                 connection.sendall(b"".join(frames))
-                connection.recv(1)
+                while connection.recv(4096):
+                    pass
 
         thread = threading.Thread(target=send, daemon=True)
         thread.start()

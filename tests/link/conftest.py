@@ -1,0 +1,3 @@
+from boards import host_folder
+
+__all__ = ["host_folder"]
