@@ -61,7 +61,10 @@ class Batch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionInfo:
-    """What does not change while a session runs."""
+    """What does not change while a session runs.
+
+    `max_rms_deg` and `max_abs_deg` are what the residual is allowed; None is no limit.
+    """
 
     design_digest: str
     axes: tuple[Axis, ...]
@@ -72,6 +75,8 @@ class SessionInfo:
     port: str
     replay: bool
     hostkit_version: str
+    max_rms_deg: float | None = None
+    max_abs_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 import { Rows } from "./decimate.js";
 import { readColours } from "./colours.js";
-import { degrees } from "./format.js";
+import { figure } from "./format.js";
 import { KINDS } from "./store.js";
 
 const FONT = "11px system-ui, sans-serif";
@@ -68,8 +68,8 @@ export class Charts {
     const model = kind === "model";
     return {
       stroke: () => (model ? this.colours.ink : this.colours[axis]),
-      width: model ? 1 : kind === "device" ? 2 : 1.25,
-      dash: model ? [5, 4] : undefined,
+      width: model ? 1.25 : kind === "device" ? 3 : 1.25,
+      dash: model ? [6, 6] : undefined,
       points: { show: false },
     };
   }
@@ -149,8 +149,10 @@ export class Charts {
     ctx.restore();
   }
 
-  allow(limitDeg) {
-    this.limitDeg = Number.isFinite(limitDeg) ? limitDeg : null;
-    return this.limitDeg === null ? "" : `allowed ±${degrees(this.limitDeg)}°`;
+  /** Take the limits of the residual; gives what the band stands for. */
+  allow({ max_abs_deg: most = null, max_rms_deg: rms = null }) {
+    this.limitDeg = most ?? rms;
+    if (this.limitDeg === null) return "";
+    return `${most === null ? "RMS allowed" : "allowed"} ±${figure(this.limitDeg)}°`;
   }
 }

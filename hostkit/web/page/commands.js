@@ -18,7 +18,7 @@ export class Commands {
     });
     this.port = byId("port-button");
     this.port.addEventListener("click", () => {
-      attempt(this.said, () => post("port", { action: this.port.dataset.action }));
+      attempt(byId("port-said"), () => post("port", { action: this.port.dataset.action }));
     });
     byId("judge-anew").addEventListener("click", () => {
       attempt(byId("judge-said"), () => post("verdict", { action: "restart" }));
@@ -47,9 +47,10 @@ export class Commands {
   showPort({ port_state, replay, ended }) {
     const released = port_state === "released";
     this.port.dataset.action = released ? "take" : "release";
-    text(this.port, released ? "Take port" : "Release port");
+    text(this.port, released ? "Take" : "Release");
+    this.port.title = released ? "Open the port again" : "Let another program have the port";
     const off = Boolean(replay) || ended;
-    this.port.disabled = off;
+    this.port.hidden = off;
     for (const button of document.querySelectorAll("[data-command]")) {
       button.disabled = off || port_state !== "connected";
     }

@@ -35,7 +35,10 @@ export function pairs(list, entries) {
 
 /** Show rows in a table with one heading row; the first cell of a row is its heading. */
 export function table(node, headings, rows) {
-  if (!node.tHead) {
+  const key = headings.join("\n");
+  if (node.dataset.headings !== key) {
+    node.dataset.headings = key;
+    node.replaceChildren();
     const head = node.createTHead().insertRow();
     headings.forEach((said, index) => {
       const cell = element(index ? "th" : "td", { said });

@@ -6,18 +6,24 @@ import { bytes, clock, count, degrees, fixed, withUnit } from "./format.js";
 const bad = (value) => (value > 0 ? "bad" : "");
 const warn = (value) => (value > 0 ? "warn" : "");
 
+const FIGURES = [
+  ["RMS °", (axis) => degrees(axis.rms_deg)],
+  ["Mean °", (axis) => degrees(axis.mean_deg)],
+  ["Median size °", (axis) => degrees(axis.p50_deg)],
+  ["95 % below °", (axis) => degrees(axis.p95_deg)],
+  ["99 % below °", (axis) => degrees(axis.p99_deg)],
+  ["Largest °", (axis) => degrees(axis.max_deg)],
+  ["Lag ms", (axis) => (axis.lag_s === null ? "–" : fixed(axis.lag_s * 1000, 1))],
+  ["Drift °/min", (axis) => (axis.drift_deg_s === null ? "–" : degrees(axis.drift_deg_s * 60))],
+];
+
 export function showFigures(report) {
-  const rows = (report.residual ?? []).map((axis) => [
-    axis.axis,
-    degrees(axis.rms_deg),
-    degrees(axis.p95_deg),
-    degrees(axis.max_deg),
-    axis.lag_s === null ? "–" : fixed(axis.lag_s * 1000, 1),
-    axis.drift_deg_s === null ? "–" : degrees(axis.drift_deg_s * 60),
-  ]);
-  if (!rows.length) rows.push(["all", degrees(report.rms_deg), "–", degrees(report.max_deg), "–", "–"]);
-  const headings = ["", "RMS °", "p95 °", "max °", "lag ms", "°/min"];
-  table(byId("figures"), headings, rows);
+  const axes = report.residual ?? [];
+  const rows = FIGURES.map(([name, said]) => [name, ...axes.map(said)]);
+  if (!axes.length) {
+    rows.splice(0, Infinity, ["RMS °", degrees(report.rms_deg)], ["Largest °", degrees(report.max_deg)]);
+  }
+  table(byId("figures"), ["", ...(axes.length ? axes.map(({ axis }) => axis) : ["all"])], rows);
   pairs(byId("counts"), [
     ["Samples", count(report.samples)],
     ["Checked", count(report.checked)],

@@ -33,7 +33,7 @@ function ladder(parent) {
 function dial(parent) {
   for (const tick of [-60, -45, -30, -20, -10, 0, 10, 20, 30, 45, 60]) {
     const length = tick % 30 === 0 ? 10 : 6;
-    shape("path", { d: `M0 -88v${-length}`, transform: `rotate(${tick})` }, parent, "tick");
+    shape("path", { d: `M0 -102v${-length}`, transform: `rotate(${tick})` }, parent, "tick");
   }
 }
 
@@ -46,7 +46,7 @@ export class Horizon {
   }
 
   build(box) {
-    const svg = shape("svg", { viewBox: "-130 -102 260 204", "aria-hidden": "true" }, box);
+    const svg = shape("svg", { viewBox: "-130 -120 260 240", "aria-hidden": "true" }, box);
     const world = shape("g", {}, svg);
     shape("rect", { x: -400, y: -700, width: 800, height: 700 }, world, "sky");
     shape("rect", { x: -400, y: 0, width: 800, height: 700 }, world, "ground");
@@ -54,7 +54,7 @@ export class Horizon {
     ladder(world);
     this.ghost = shape("path", { d: "M-400 0H400" }, svg, "ghost");
     dial(svg);
-    this.pointer = shape("path", { d: "M0 -87l-6 11h12z" }, svg, "pointer");
+    this.pointer = shape("path", { d: "M0 -101l-6 11h12z" }, svg, "pointer");
     shape("path", { d: "M-62 0h34l8 8M62 0h-34l-8 8" }, svg, "craft");
     shape("circle", { r: 2.5 }, svg, "craft-dot");
     return world;

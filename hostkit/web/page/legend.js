@@ -5,24 +5,22 @@ import { angle } from "./format.js";
 
 export class Legend {
   constructor(axes) {
-    this.entries = axes.flatMap((axis) => [this.entry(axis, "device"), this.entry(axis, "model")]);
+    this.entries = axes.map((axis) => ({ axis, value: this.entry(axis, axis) }));
+    this.entry("dashed", "model");
   }
 
-  entry(axis, kind) {
+  entry(swatch, said) {
     const line = element("li");
     const value = element("span", { className: "value" });
-    line.append(
-      element("i", { className: `swatch ${kind === "model" ? "dashed" : axis}` }),
-      element("span", { said: `${axis} ${kind}` }),
-      value,
-    );
+    line.append(element("i", { className: `swatch ${swatch}` }), element("span", { said }), value);
     byId("legend").append(line);
-    return { axis, kind, value };
+    return value;
   }
 
   show(sample) {
-    for (const { axis, kind, value } of this.entries) {
-      text(value, sample ? `${angle(sample[axis][kind])}°` : "");
+    for (const { axis, value } of this.entries) {
+      const { device, model } = sample?.[axis] ?? {};
+      text(value, sample ? `${angle(device)}° (${angle(model)}°)` : "");
     }
   }
 }

@@ -70,8 +70,7 @@ class Page {
 
   info(info) {
     showInfo(info);
-    const limit = info.thresholds?.max_abs_deg;
-    if (this.charts) text(byId("band-said"), this.charts.allow(limit));
+    if (this.charts) text(byId("band-said"), this.charts.allow(info));
   }
 
   samples(event, live) {
@@ -87,8 +86,9 @@ class Page {
     showLink(snapshot);
     showDevice(snapshot.device);
     showMessages(snapshot);
-    this.panels.parameters.show(snapshot.parameters);
-    this.panels.tau.show(snapshot.parameters);
+    const settable = !snapshot.replay && !snapshot.ended && snapshot.port_state === "connected";
+    this.panels.parameters.show(snapshot.parameters, settable);
+    this.panels.tau.show(snapshot.parameters, settable);
     this.panels.commands.show(snapshot);
     this.panels.recording.show(snapshot.recording);
     this.panels.replay.show(snapshot.replay);

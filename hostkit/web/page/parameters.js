@@ -35,11 +35,11 @@ class Row {
     this.used = element("span", { className: "used" });
     this.input = element("input");
     Object.assign(this.input, { id, type: "number", step: "any", required: true });
-    const button = element("button", { said: "Apply" });
-    button.setAttribute("aria-label", `Apply ${this.name}`);
+    this.button = element("button", { said: "Apply" });
+    this.button.setAttribute("aria-label", `Apply ${this.name}`);
     this.said = element("p", { className: "said" });
     this.said.setAttribute("aria-live", "polite");
-    this.form.append(label, this.used, this.input, button, this.said);
+    this.form.append(label, this.used, this.input, this.button, this.said);
     this.input.addEventListener("input", () => { this.dirty = true; });
     this.form.addEventListener("submit", (event) => this.apply(event));
   }
@@ -51,7 +51,8 @@ class Row {
     if (!this.refused) this.dirty = false;
   }
 
-  show(parameter) {
+  show(parameter, settable) {
+    this.button.disabled = !settable;
     const used = withUnit(figure(parameter.value, 6), parameter.unit);
     const design = differs(parameter) ? ` (design ${figure(parameter.design_value)})` : "";
     text(this.used, used + design);
@@ -76,7 +77,9 @@ export class Parameters {
     });
   }
 
-  show(parameters) {
+  /** `settable` is false where there is no device to set anything on. */
+  show(parameters, settable) {
+    byId("revert").disabled = !settable;
     byId("retuned").hidden = !parameters.some(differs);
     const listed = parameters.filter((parameter) => parameter.name !== TAU).slice(0, 256);
     const names = new Set(listed.map((parameter) => parameter.name));
@@ -85,7 +88,7 @@ export class Parameters {
       row.form.remove();
       this.rows.delete(name);
     }
-    for (const parameter of listed) this.row(parameter).show(parameter);
+    for (const parameter of listed) this.row(parameter).show(parameter, settable);
   }
 
   row(parameter) {

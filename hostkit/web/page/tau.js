@@ -52,7 +52,8 @@ export class Tau {
     if (!this.refused) this.dirty = false;
   }
 
-  show(parameters) {
+  show(parameters, settable) {
+    byId("tau-apply").disabled = !settable;
     const parameter = parameters.find(({ name }) => name === TAU);
     this.form.hidden = !parameter;
     if (!parameter) return;

@@ -7,9 +7,11 @@ const PORT_MARKS = { connected: "ok", lost: "bad", released: "warn", ended: "" }
 
 export function showInfo(info) {
   text(byId("port-name"), info.port);
+  byId("port-name").title = info.port;
   const node = byId("design-name");
-  text(node, `${info.design_digest} · τ ${figure(info.tau_s, 3)} s · ${figure(info.rate_hz)} Hz`);
-  node.title = `η ${figure(info.eta, 6)}, crossover ${figure(info.crossover_hz, 3)} Hz, ` +
+  text(byId("design-digest"), info.design_digest);
+  text(node, `τ ${figure(info.tau_s, 3)} s · η ${figure(info.eta)} · ${figure(info.rate_hz)} Hz`);
+  node.title = `eta ${figure(info.eta, 6)}, crossover ${figure(info.crossover_hz, 3)} Hz, ` +
     `hostkit ${info.hostkit_version}`;
 }
 
@@ -25,8 +27,9 @@ export function showHead(snapshot) {
   text(chip, snapshot.port_state);
   chip.className = `chip ${PORT_MARKS[snapshot.port_state] ?? ""}`;
   text(byId("device-name"), deviceName(device));
-  text(byId("epoch"), snapshot.epoch);
-  text(byId("reconnects"), snapshot.reconnects ? `${snapshot.reconnects}× reconnected` : "");
+  text(byId("epoch"), `epoch ${snapshot.epoch}`);
+  const again = snapshot.reconnects;
+  text(byId("reconnects"), again ? `, ${again}× reconnected` : "");
   text(byId("elapsed"), clock(snapshot.elapsed_s) + (snapshot.ended ? " · ended" : ""));
   showVerdict(verdictOf(report), report.reasons ?? []);
 }
