@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import threading
+import time
 from typing import Any
 
 import serial
@@ -19,6 +20,8 @@ with contextlib.suppress(ImportError):
 # A port that goes away while pyserial sets it up raises the error of termios, which is no OSError.
 
 READ_BYTES = 65536
+READ_TIMEOUT_S = 0.1
+URLS = ("socket", "rfc2217")
 URL_READ_BYTES = 4096
 URL_WAIT_S = 0.02
 """pyserial cannot tell how much waits behind a URL, so its reads are cut by time."""
@@ -60,14 +63,22 @@ class SerialTransport:
             return None
 
     def _read(self, timeout_s: float) -> bytes:
-        self._port.timeout = timeout_s
+        if self._is_url:
+            return self._read_url(timeout_s)
+        if self._port.timeout != timeout_s:
+            self._port.timeout = timeout_s
         first: bytes = self._port.read(1)
         if not first:
             return b""
-        if not self._is_url:
-            return first + bytes(self._port.read(min(self._port.in_waiting, READ_BYTES)))
-        self._port.timeout = URL_WAIT_S
-        return first + bytes(self._port.read(URL_READ_BYTES))
+        return first + bytes(self._port.read(min(self._port.in_waiting, READ_BYTES)))
+
+    def _read_url(self, timeout_s: float) -> bytes:
+        """Read with the one time-out that was set: a new one is negotiated over the network."""
+        end_s = time.monotonic() + timeout_s
+        while True:
+            data = bytes(self._port.read(URL_READ_BYTES))
+            if data or time.monotonic() >= end_s:
+                return data
 
     def write(self, data: bytes) -> None:
         """Send to the device; what it does not take within a moment is lost. Thread-safe."""
@@ -91,10 +102,14 @@ class SerialTransport:
 
 
 def _open(port: str, baud: int) -> Any:
-    settings = {"timeout": 0.1, "write_timeout": WRITE_TIMEOUT_S}
-    if "://" in port:
-        return serial.serial_for_url(port, baud, **settings)
-    return serial.Serial(port, baud, exclusive=True, **settings)
+    kind, mark, _ = port.partition("://")
+    if not mark:
+        return serial.Serial(
+            port, baud, exclusive=True, timeout=READ_TIMEOUT_S, write_timeout=WRITE_TIMEOUT_S
+        )
+    if kind not in URLS:
+        raise ValueError(f"of pyserial's URLs hostkit takes {' and '.join(URLS)}")
+    return serial.serial_for_url(port, baud, timeout=URL_WAIT_S)
 
 
 def explain(port: str, error: Exception) -> str:

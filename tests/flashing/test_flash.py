@@ -7,12 +7,15 @@ from pathlib import Path
 
 import pytest
 from boards import generated, require_or_skip
+from fake_ports import Cable, wait_until
 
+from hostkit.cli import flash as command
 from hostkit.cli.main import run
 from hostkit.errors import ToolMissingError
 from hostkit.flashing import drive as drives
 from hostkit.flashing import loading
 from hostkit.flashing.programmer import PROGRAMMERS
+from hostkit.link.transport import open_link
 
 IMAGES = {"atmega328p": "firmware.hex", "rp2040": "firmware.uf2", "stm32f103": "firmware.bin"}
 
@@ -217,3 +220,21 @@ def test_a_port_that_may_not_be_opened_says_so(bench: Bench, port: str, monkeypa
     monkeypatch.setattr(loading.os, "access", lambda path, mode: path != port)
     code, _, err = bench.flash(bench.code("atmega328p"), "--no-build", "--port", port)
     assert (code, "dialout" in err) == (4, True)
+
+
+def test_port_that_is_being_watched_is_released_for_the_time_of_loading(
+    bench: Bench, tmp_path: Path, monkeypatch
+) -> None:
+    bench.install("avrdude")
+    folder = bench.code("atmega328p")
+    cable = Cable(tmp_path)
+    link = open_link(str(cable.path), 500_000)
+    states = []
+    monkeypatch.setattr(command, "run_flash", lambda *_, **__: states.append(link.state))
+    code, _, err = bench.flash(folder, "--port", cable.path, "--no-build")
+    assert (code, states) == (0, ["released"])
+    assert f"another hostkit process has released {cable.path}" in err
+    wait_until(lambda: link.state == "connected")
+    link.close()
+    assert "released" not in bench.flash(folder, "--port", cable.path, "--no-build")[2]
+    cable.close()

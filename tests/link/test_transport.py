@@ -5,11 +5,18 @@ import socket
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import serial
+import serial.rfc2217
+from designs import design
+from device import Device
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
+from hostkit.link import transport
+from hostkit.link.baud_scan import BaudScan
 from hostkit.link.serial_port import SerialTransport, explain
 from hostkit.link.sockets import SocketTransport, connect, listen
 from hostkit.link.transport import open_link, open_transport
@@ -251,3 +258,83 @@ def test_no_descriptor_is_left_open(cable: Cable) -> None:
         with pytest.raises(DeviceError):
             open_link("/dev/null", 500_000)
     assert len(os.listdir("/proc/self/fd")) == before  # noqa: PTH208
+
+
+def test_rate_that_is_not_given_is_found_out(cable: Cable, monkeypatch) -> None:
+    stop = threading.Event()
+    frames = b"".join(Device(design()).frames(5))
+
+    def device() -> None:
+        while not stop.is_set():
+            cable.send(frames)
+            stop.wait(0.01)
+
+    thread = threading.Thread(target=device)
+    thread.start()
+    link = open_link(str(cable.path), None)
+    assert read_until(link, lambda got: len(got) > len(frames))
+    stop.set()
+    thread.join(30)
+    link.close()
+
+
+def test_port_whose_rate_is_not_found_is_closed(cable: Cable, monkeypatch) -> None:
+    text = BaudScan(finding="text", baud=9600, sample="hello")
+    monkeypatch.setattr(transport, "scan_baud", lambda port, clock: text)
+    with pytest.raises(DeviceError, match="gives text at 9600 bit/s, such as 'hello'"):
+        open_link(str(cable.path), None)
+    open_transport(str(cable.path), 500_000).close()
+
+
+def serve_rfc2217(
+    listener: socket.socket, echo: serial.SerialBase, stop: threading.Event | None = None
+) -> None:
+    """Serve a loop-back port over the network, as a terminal server does."""
+    peer, _ = listener.accept()
+    with peer:
+        peer.settimeout(0.02)
+        manager = serial.rfc2217.PortManager(echo, SimpleNamespace(write=peer.sendall))
+        while stop is None or not stop.is_set():
+            try:
+                got = peer.recv(4096)
+            except TimeoutError:
+                continue
+            except OSError:
+                return
+            if not got:
+                return
+            echo.write(b"".join(manager.filter(got)))
+            peer.sendall(b"".join(manager.escape(echo.read(echo.in_waiting))))
+
+
+def test_port_of_a_terminal_server() -> None:
+    echo = serial.serial_for_url("loop://", timeout=0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        server = threading.Thread(target=serve_rfc2217, args=(listener, echo))
+        server.start()
+        url = f"rfc2217://127.0.0.1:{listener.getsockname()[1]}"
+        port = SerialTransport(url, 115_200)
+        assert echo.baudrate == 115_200
+        assert port.set_baud(500_000)
+        assert echo.baudrate == 500_000
+        port.write(b"\xff there and back")
+        assert read_until(port, lambda got: len(got) >= 16) == b"\xff there and back"
+        port.close()
+        server.join(30)
+        assert not server.is_alive()
+
+
+def test_terminal_server_that_goes_away_is_a_loss() -> None:
+    echo = serial.serial_for_url("loop://", timeout=0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        stop = threading.Event()
+        server = threading.Thread(target=serve_rfc2217, args=(listener, echo, stop))
+        server.start()
+        port = SerialTransport(f"rfc2217://127.0.0.1:{listener.getsockname()[1]}", 115_200)
+        stop.set()
+        server.join(30)
+        wait_until(lambda: port.read(0.05) is None)
+        assert (port.state, port.read(0.0)) == ("lost", None)
+        assert not port.set_baud(9600)
+        port.write(b"nobody hears this")
+        port.close()
