@@ -16,6 +16,9 @@ from hostkit.filters.complementary import (
 from hostkit.records import FilterDesign, RetunedParameter
 from hostkit.spec import FixedPointSpec
 
+AGREEING_STEPS = 50
+"""Right steps after which no change of a parameter can have been missed."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviceParameter:
@@ -77,6 +80,8 @@ class Retuning:
     ----------
     designed
         The model of the design itself.
+    doubted
+        Whether a frame was lost that may have told of a change.
     """
 
     def __init__(self, design: FilterDesign) -> None:
@@ -84,6 +89,10 @@ class Retuning:
         self.parameters = {p.name: p for p in device_parameters(design)}
         self._told: dict[str, float] = {}
         self._model: Model | None = None
+        self._before: dict[str, float] = {}
+        self.doubted = False
+        self._agreed = 0
+        self.drop_withheld()
 
     def told(self, name: str, value: float) -> None:
         """Take a value that the device told; what is no parameter of the filter is passed over."""
@@ -95,6 +104,15 @@ class Retuning:
         """Trust nothing that was told: the device may have started anew since."""
         self._told.clear()
         self._model = None
+        self.drop_withheld()
+
+    def is_designed(self) -> None:
+        """Take a sample that was made with the design's own parameters: all of them are known."""
+        if self._model is None and self._told and not self.untold and not self.differences():
+            return
+        self._told = {name: own.design_value for name, own in self.parameters.items()}
+        self._model, self.doubted = None, False
+        self.drop_withheld()
 
     @property
     def untold(self) -> tuple[str, ...]:
@@ -108,7 +126,10 @@ class Retuning:
     def retuned_model(self) -> Model | None:
         """Return the model with what was told; None while something is not known."""
         if self._model is None and not self.untold:
-            self._model = self._made()
+            self._model = self._made() if self.differences() else None
+            if self._model is None:
+                # A retuned device uses something else than it told: the telling was lost.
+                self.forget()
         return self._model
 
     def _made(self) -> Model | None:
@@ -118,7 +139,6 @@ class Retuning:
             design = with_told(own, values)
             return Model(design=design, spec=FILTERS[design.filter].lower(design))
         except HostkitError:
-            self._told.clear()
             return None
 
     def differences(self) -> tuple[RetunedParameter, ...]:
@@ -134,8 +154,38 @@ class Retuning:
             if name in self._told and self._told[name] != own.design_value
         )
 
+    def doubt(self) -> None:
+        """Take it that a change may have been missed."""
+        self.doubted, self._agreed = True, 0
+
+    def agreed(self, steps: int) -> None:
+        """Take steps that were right: after some of them nothing can have changed."""
+        self._agreed += steps
+        self.doubted &= self._agreed < AGREEING_STEPS
+
+    def withhold(self, wrong: int, checked: int) -> None:
+        """Keep steps that were wrong until the device has told all of its parameters again."""
+        told = dict(self._told)
+        self.forget()
+        self._before, self._withheld = told, (wrong, checked)
+        self.doubted = False
+
+    def take_withheld(self) -> tuple[int, int]:
+        """Return wrong and checked steps that count after all, once everything is told again."""
+        if not self._before or self.untold:
+            return 0, 0
+        found = self._withheld if self._before == self._told else (0, 0)
+        self.drop_withheld()
+        return found
+
+    def drop_withheld(self) -> None:
+        """Count nothing that is withheld."""
+        self._before, self._withheld = {}, (0, 0)
+
 
 def runs(flags: Sequence[bool]) -> list[slice]:
     """Return the stretches of equal flags."""
+    if not flags:
+        return []
     changes = [k for k in range(1, len(flags)) if flags[k] != flags[k - 1]]
     return [slice(a, b) for a, b in zip([0, *changes], [*changes, len(flags)], strict=True)]

@@ -1,19 +1,16 @@
-"""Holding a device against its models, step by step, as its samples arrive."""
+"""Holding a device against its models as its samples arrive, and giving a verdict."""
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.errors import HostkitError
-from hostkit.filters import FILTERS
-from hostkit.records import AXES, AngleTrace, FilterDesign, ResidualStatistics, ValidationReport
-from hostkit.sensors import SENSORS
-from hostkit.sensors.counts import Counts, to_rate_and_force_g
+from hostkit.records import AXES, AngleTrace, FilterDesign, ValidationReport
 from hostkit.validation.checks import checks
+from hostkit.validation.follower import Follower, Steps
 from hostkit.validation.histogram import Histogram
 from hostkit.validation.judged import Judged
 from hostkit.validation.order import SampleOrder, places
@@ -50,6 +47,10 @@ class Validator:
     ----------
     spec
         The design in integers.
+    checked, mismatches
+        Steps that were computed again, and those of them that are wrong.
+    samples
+        Samples that came, each once.
     """
 
     def __init__(
@@ -61,16 +62,12 @@ class Validator:
     ) -> None:
         if tolerance_rad is not None and not (math.isfinite(tolerance_rad) and tolerance_rad > 0):
             raise HostkitError(f"tolerance_rad = {tolerance_rad}; it must be a number above 0")
-        self._design = design
-        self._tolerance_rad = tolerance_rad
+        self._axes, self._period_s = AXES[design.axes], design.period_s
         self._as_designed = as_designed
-        self._filter = FILTERS[design.filter]
-        self._part = SENSORS[design.sensor.part]
         self._retuning = Retuning(design)
         self.spec = self._retuning.designed.spec
+        self._follower = Follower(design, self._retuning.designed, tolerance_rad)
         self._order = SampleOrder()
-        self._state: IntArray | None = None
-        self._float_state: Vector | None = None
         self._elapsed = 0
         self._is_retuned = False
         self.restart()
@@ -78,10 +75,10 @@ class Validator:
     def restart(self) -> None:
         """Forget the figures so far; the models go on."""
         self._order.forget_figures()
-        self._samples = self.checked = self.mismatches = self._unjudged = 0
+        self.samples = self.checked = self.mismatches = self._unjudged = 0
         self._was_retuned = self._is_retuned
-        axes = AXES[self._design.axes]
-        self._trackers = tuple(ResidualTracker(axis, self._design.period_s) for axis in axes)
+        self._retuning.drop_withheld()
+        self._trackers = tuple(ResidualTracker(axis, self._period_s) for axis in self._axes)
 
     def begin_epoch(self, *, parameters_kept: bool = False) -> None:
         """Take the next sample as one that does not follow: it begins anew, and nothing was lost.
@@ -99,10 +96,13 @@ class Validator:
         """Take a parameter that the device told: the samples behind it were made with it."""
         self._retuning.told(name, value)
 
-    @property
-    def samples(self) -> int:
-        """Samples that came, each once."""
-        return self._samples
+    def doubt_parameters(self) -> None:
+        """Say that a frame was lost which may have told of a parameter.
+
+        If steps of a retuned device are wrong from here on, they are withheld until it has told
+        all of its parameters again, and count only if those are the same as before.
+        """
+        self._retuning.doubt()
 
     @property
     def lost(self) -> int:
@@ -122,119 +122,92 @@ class Validator:
         Judged
             What came in order, beside the models.
         """
-        trace, step, anew = self._in_order(trace)
-        device = trace.state_raw * np.array(self.spec.state_per_unit)
-        model, wrong = np.full_like(device, np.nan), np.zeros(len(trace), dtype=np.bool_)
-        follows = (step == 1) & ~anew
+        trace, step, follows = self._in_order(trace)
+        device, model = (
+            self._follower.device_rad(trace),
+            np.full((len(trace), len(self._axes)), np.nan),
+        )
+        wrong = np.zeros(len(trace), dtype=np.bool_)
         retuned = np.zeros_like(follows) if trace.retuned is None else trace.retuned
-        for run in runs(retuned.tolist()) if len(trace) else ():
+        for run in runs(retuned.tolist()):
             used = self._model(is_retuned=bool(retuned[run.start]))
-            if used is None:
-                self._unjudged += run.stop - run.start
-                self._float_state, self._state = device[run][-1], trace.state_raw[run][-1:]
-            else:
-                part = _part(trace, run)
-                model[run] = self._follow_float(used, part, follows[run], device[run])
-                wrong[run] = self._check_steps(used, part, follows[run], device[run], model[run])
-        return self._judged(trace, step, ~follows, device, model, wrong)
-
-    def _in_order(self, trace: AngleTrace) -> tuple[AngleTrace, IntArray, BoolArray]:
-        """Return the samples that are to be judged, their steps, and where the counter is new."""
-        columns = (trace.time_us[:, None], trace.accel_count, trace.gyro_count, trace.state_raw)
-        contents = [row.tobytes() for row in np.hstack(columns)]
-        restarts = self._order.restarts
-        found = places(self._order, trace.sequence.tolist(), contents, trace.restarted.tolist())
-        names = [place for place, _ in found]
-        self._samples += len(names) - names.count("repeated")
-        kept = np.array([name not in ("late", "repeated") for name in names], dtype=np.bool_)
-        anew = np.array([name == "anew" for name in names], dtype=np.bool_)
-        if self._order.restarts > restarts:
-            self._retuning.forget()
-        step = np.array([step for _, step in found], dtype=np.int64)
-        return (trace, step, anew) if kept.all() else (_part(trace, kept), step[kept], anew[kept])
-
-    def _model(self, *, is_retuned: bool) -> Model | None:
-        self._is_retuned = is_retuned
-        self._was_retuned |= is_retuned
-        if not is_retuned:
-            return self._retuning.designed
-        return None if self._as_designed else self._retuning.retuned_model()
-
-    def _follow_float(
-        self, used: Model, trace: AngleTrace, follows: BoolArray, device: Vector
-    ) -> Vector:
-        """Return the states of the float model; NaN where it started from the device."""
-        counts = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
-        rate, force = to_rate_and_force_g(self._part, self._design.sensor, counts)
-        exact = np.full_like(device, np.nan)
-        starts = [0, *(int(k) for k in np.flatnonzero(~follows) if k > 0), len(trace)]
-        for begin, end in pairwise(starts):
-            state = self._float_state
-            if trace.restarted[begin]:
-                state = None
-            elif not follows[begin]:
-                state, begin = device[begin], begin + 1
-            run = slice(begin, end)
-            if begin < end:
-                exact[run] = self._filter.run_float(used.design, rate[run], force[run], state)
-                state = exact[end - 1]
-            self._float_state = state
-        return exact
-
-    def _check_steps(
-        self, used: Model, trace: AngleTrace, follows: BoolArray, device: Vector, exact: Vector
-    ) -> BoolArray:
-        """Tell which steps are wrong, and count them."""
-        judged = follows | trace.restarted
-        if self._tolerance_rad is None:
-            differs = self._expected(used, trace) != trace.state_raw
-            wrong: BoolArray = differs.any(axis=1) & judged
-        else:
-            axes = len(self.spec.axes)
-            away = np.abs(wrap_rad(device[:, :axes] - exact[:, :axes]))
-            wrong = (away > self._tolerance_rad).any(axis=1) & judged
-        self._state = trace.state_raw[-1:]
-        self.checked += int(judged.sum())
-        self.mismatches += int(wrong.sum())
-        return wrong
-
-    def _expected(self, used: Model, trace: AngleTrace) -> IntArray:
-        before = trace.state_raw[:1] if self._state is None else self._state
-        before = np.concatenate([before, trace.state_raw[:-1]])
-        accel, gyro = trace.accel_count, trace.gyro_count
-        expected = self._filter.step_integer(used.spec, before, accel, gyro)
-        for k in np.flatnonzero(trace.restarted):
-            one = slice(k, k + 1)
-            expected[one] = self._filter.run_integer(used.spec, accel[one], gyro[one])
-        return expected
-
-    def _judged(
-        self,
-        trace: AngleTrace,
-        step: IntArray,
-        begins: BoolArray,
-        device: Vector,
-        model: Vector,
-        wrong: BoolArray,
-    ) -> Judged:
-        """Take the residual into the figures."""
-        axes = len(self.spec.axes)
-        device, model = device[:, :axes], model[:, :axes]
+            steps = self._judge(used, _part(trace, run), follows[run])
+            if steps is not None:
+                model[run], wrong[run] = steps.exact, steps.wrong
         residual = wrap_rad(device - model)
-        if len(trace):
-            elapsed = self._elapsed + np.cumsum(step)
-            self._elapsed = int(elapsed[-1])
-            self._track(elapsed.astype(np.float64) * self._design.period_s, model, residual, begins)
+        self._track(step, model, residual, ~follows)
         return Judged(
             time_us=trace.time_us,
             device_rad=device,
             model_rad=model,
             residual_rad=residual,
             mismatch=wrong,
-            begins=begins,
+            begins=~follows,
         )
 
-    def _track(self, time_s: Vector, model: Vector, residual: Vector, begins: BoolArray) -> None:
+    def _in_order(self, trace: AngleTrace) -> tuple[AngleTrace, IntArray, BoolArray]:
+        """Return the samples that are to be judged, their steps, and which follow."""
+        columns = (trace.time_us[:, None], trace.accel_count, trace.gyro_count, trace.state_raw)
+        contents = [row.tobytes() for row in np.hstack(columns)]
+        restarts = self._order.restarts
+        found = places(self._order, trace.sequence.tolist(), contents, trace.restarted.tolist())
+        names = [place for place, _ in found]
+        self.samples += len(names) - names.count("repeated")
+        if self._order.restarts > restarts:
+            self._retuning.forget()
+        elif "gap" in names:
+            self._retuning.doubt()
+        kept = np.array([name not in ("late", "repeated") for name in names], dtype=np.bool_)
+        follows = np.array([name == "follows" for name in names], dtype=np.bool_)
+        step = np.array([step for _, step in found], dtype=np.int64)
+        if kept.all():
+            return trace, step, follows
+        return _part(trace, kept), step[kept], follows[kept]
+
+    def _model(self, *, is_retuned: bool) -> Model | None:
+        self._is_retuned = is_retuned
+        self._was_retuned |= is_retuned
+        if not is_retuned:
+            self._retuning.is_designed()
+            return self._retuning.designed
+        return None if self._as_designed else self._retuning.retuned_model()
+
+    def _judge(self, used: Model | None, trace: AngleTrace, follows: BoolArray) -> Steps | None:
+        if used is None:
+            self._unjudged += len(trace)
+            self._follower.skip(trace)
+            return None
+        steps = self._follower.run(used, trace, follows)
+        self._count_withheld()
+        wrong, checked = int(steps.wrong.sum()), int(steps.judged.sum())
+        if wrong and self._is_retuned and self._retuning.doubted:
+            first = int(steps.wrong.argmax())
+            later = int(steps.judged[first:].sum())
+            self._retuning.withhold(wrong, later)
+            steps.withdraw(first)
+            self._follower.skip(trace)
+            self._unjudged += len(trace) - first
+            wrong, checked = 0, checked - later
+        elif not wrong:
+            self._retuning.agreed(checked)
+        self.mismatches += wrong
+        self.checked += checked
+        return steps
+
+    def _count_withheld(self) -> None:
+        """Count wrong steps that were withheld, now that the device has told the same again."""
+        wrong, checked = self._retuning.take_withheld()
+        self.mismatches += wrong
+        self.checked += checked
+        self._unjudged -= checked
+
+    def _track(self, step: IntArray, model: Vector, residual: Vector, begins: BoolArray) -> None:
+        """Take the residual into the figures."""
+        if not len(step):
+            return
+        elapsed = self._elapsed + np.cumsum(step)
+        self._elapsed = int(elapsed[-1])
+        time_s = elapsed.astype(np.float64) * self._period_s
         known = np.isfinite(residual[:, 0])
         broken = np.where(begins[:, None], np.nan, residual)
         for i, tracker in enumerate(self._trackers):
@@ -259,38 +232,36 @@ class Validator:
         """
         figures = self._figures(digest_ok=other_digest is None)
         if other_digest is not None:
-            reasons: tuple[str, ...] = (f"the device runs design {other_digest}",)
+            refusal = f"the device runs design {other_digest}"
         elif self._as_designed and self._was_retuned:
-            reasons = (
+            refusal = (
                 "the device runs its design with other parameters, set over the link, calibrated "
-                "or stored; PREFLIGHT_STORAGE with 2 gives it the design's again",
+                "or stored; PREFLIGHT_STORAGE with 2 gives it the design's again"
             )
         else:
             reasons = tuple(c.reason for c in checks(figures, thresholds) if c.reason)
             return replace(figures, verdict="fail" if reasons else "pass", reasons=reasons)
-        return replace(figures, verdict="refused", reasons=reasons)
+        return replace(figures, verdict="refused", reasons=(refusal,))
 
     def _figures(self, *, digest_ok: bool) -> ValidationReport:
         count = sum(tracker.count for tracker in self._trackers)
         squares = sum(tracker.squares for tracker in self._trackers)
-        residual: list[ResidualStatistics] = [
-            found for t in self._trackers if (found := t.statistics()) is not None
-        ]
+        residual = [tracker.statistics() for tracker in self._trackers]
         return ValidationReport(
-            samples=self._samples,
+            samples=self.samples,
             checked=self.checked,
             lost=self.lost,
             mismatches=self.mismatches,
             rms_rad=math.sqrt(squares / count) if count else None,
-            max_rad=max((t.max_rad for t in self._trackers), default=0.0) if count else None,
+            max_rad=max(t.max_rad for t in self._trackers) if count else None,
             digest_ok=digest_ok,
             verdict="fail",
             late=self._order.late,
             repeated=self._order.repeated,
-            unjudged=self._unjudged + self._order.thinned,
+            unjudged=min(self.samples, self._unjudged + self._order.thinned),
             stride=self._order.widest_stride,
             untold=self.untold,
-            residual=tuple(residual),
+            residual=tuple(entry for entry in residual if entry is not None),
             retuned=self._retuning.differences() if self._was_retuned else (),
         )
 
