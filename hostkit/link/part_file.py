@@ -54,7 +54,7 @@ class PartFile:
         if path.exists() and not path.is_file():
             raise HostkitError(f"{path} is no file; a recording goes to a file of its own")
         self.path = path
-        self.part = path.with_name(path.name + ".part")
+        self.part = self.name_of_part(path)
         self.written_bytes = 0
         self.left: Path | None = None
         self._write = write
@@ -68,6 +68,11 @@ class PartFile:
         self._sync_error: OSError | None = None
         self._thread = threading.Thread(target=self._keep_in_sync, daemon=True)
         self._thread.start()
+
+    @staticmethod
+    def name_of_part(path: Path) -> Path:
+        """Return what a file is called until it is complete."""
+        return path.with_name(path.name + ".part")
 
     def append(self, pieces: Sequence[bytes]) -> None:
         """Append some pieces, each whole or not at all.

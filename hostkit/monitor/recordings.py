@@ -7,6 +7,7 @@ from typing import Protocol
 
 from hostkit.errors import HostkitError
 from hostkit.link.decoder import Frame
+from hostkit.link.tlog import TlogWriter
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.snapshot import RecordingState
 
@@ -29,6 +30,10 @@ class Recorder(Protocol):
     @property
     def written_bytes(self) -> int:
         """How many bytes are in it."""
+
+    @property
+    def left(self) -> Path | None:
+        """Where an unfinished recording of that name was moved; None if there was none."""
 
     def add(self, time_us: int, frames: Sequence[Frame]) -> None:
         """Keep some frames that came at a time, us since 1970."""
@@ -74,9 +79,10 @@ class Recordings:
     def __init__(
         self,
         recorders: Sequence[Recorder],
-        folder: Path,
-        opener: Callable[[Path], Recorder],
         notices: Notices,
+        *,
+        folder: Path = Path(),
+        opener: Callable[[Path], Recorder] = TlogWriter,
     ) -> None:
         self._open = list(recorders)
         self._folder, self._opener, self._notices = folder, opener, notices
@@ -84,6 +90,11 @@ class Recordings:
         self._by_name: Recorder | None = None
         self._error = ""
         self.problems: list[str] = []
+
+    @property
+    def active(self) -> bool:
+        """Whether anything is being written."""
+        return bool(self._open)
 
     def check(self, name: str) -> None:
         """Refuse a name that is not plain, or that is taken.
@@ -108,6 +119,8 @@ class Recordings:
         self._open.append(recorder)
         self._shown = self._by_name = recorder
         self._error = ""
+        if recorder.left is not None:
+            self._notices.add("warning", f"an unfinished recording is now {recorder.left.name}")
         self._notices.add("info", f"recording to {name}")
 
     def stop(self) -> None:

@@ -131,7 +131,9 @@ class Session:
                 transport, encoder, clock, notices, self.design, silent=silent
             ),
             timesync=TimeSync(self._now_ns),
-            recordings=Recordings((*own, *self.recorders), options.folder, self._opener, notices),
+            recordings=Recordings(
+                (*own, *self.recorders), notices, folder=options.folder, opener=self._opener
+            ),
             outlets=self.outlets,
         )
 
