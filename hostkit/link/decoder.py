@@ -135,6 +135,11 @@ class Decoder:
         """Frames of an id that the dialect does not have."""
         return self._framer.unknown
 
+    @property
+    def pending_bytes(self) -> int:
+        """Bytes that are not decided on yet; less than the longest frame."""
+        return self._framer.pending_bytes
+
     def statistics(self) -> LinkStatistics:
         """Return the account so far."""
         framer, sources = self._framer, self._sequences.statistics()

@@ -59,7 +59,8 @@ class Framer:
     bad, bad_bytes
         Runs of bytes that belong to no frame, and their bytes.
     crc_failures
-        Frames of the dialect whose checksum is wrong.
+        Frames of the dialect whose checksum is wrong, where a frame is due: behind another one,
+        be it intact or one of these. What looks like a frame within noise is not counted here.
     unknown
         Frames of an id that the dialect does not have.
     resyncs
@@ -78,6 +79,8 @@ class Framer:
     _claimed: int = 0
     """Bytes passed over so far of a frame whose id is unknown."""
     _claim_left: int = 0
+    _due_in: int = -1
+    """Bytes to where a frame with a wrong checksum ends by its own account."""
 
     @property
     def pending_bytes(self) -> int:
@@ -112,7 +115,7 @@ class Framer:
             if whole > size:
                 break
             if crc(buffer[at + 1 : ends] + known[1]) != buffer[ends] | buffer[ends + 1] << 8:
-                self.crc_failures += 1
+                self._count_failure(whole - at)
                 at = self._skip(at, 1)
                 continue
             if self._lost or self._claimed:
@@ -128,7 +131,7 @@ class Framer:
         self._disbelieve()
         if rest:
             self._count_bad(rest)
-        self._lost = False
+        self._lost, self._due_in = False, -1
 
     def _skip_to_magic(self, buffer: bytes, at: int) -> int:
         found = buffer.find(MAGIC, at)
@@ -137,6 +140,7 @@ class Framer:
     def _skip(self, at: int, count: int) -> int:
         """Pass over bytes: they belong to an unknown frame, or to none."""
         ends = at + count
+        self._due_in -= count
         if self._claim_left:
             within = min(count, self._claim_left)
             self._claimed += within
@@ -155,6 +159,11 @@ class Framer:
             signed = SIGNATURE_BYTES * buffer[at + FLAGS_AT]
             self._claim_left = FRAME_OVERHEAD_BYTES + buffer[at + 1] + signed
 
+    def _count_failure(self, length: int) -> None:
+        if self._due_in == 0 or not (self._lost or self._claim_left):
+            self.crc_failures += 1
+            self._due_in = length
+
     def _count_bad(self, count: int) -> None:
         self.bad += not self._lost
         self.bad_bytes += count
@@ -168,5 +177,5 @@ class Framer:
 
     def _found_again(self) -> None:
         self._disbelieve()
-        self._lost = False
+        self._lost, self._due_in = False, -1
         self.resyncs += 1

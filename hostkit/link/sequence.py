@@ -81,19 +81,25 @@ class SequenceCounter:
         return self._go_on(sequence, raw, ahead - 1)
 
     def _take_behind(self, sequence: int, raw: bytes, ahead: int) -> bool:
-        slot, far = self._slots[sequence], -ahead % NUMBERS >= BOOT_DISTANCE
-        boots = sequence < NEAR_ZERO and _boots(raw)
+        slot, distance = self._slots[sequence], -ahead % NUMBERS
+        boots, far = sequence < NEAR_ZERO and _boots(raw), distance >= BOOT_DISTANCE
         if slot == raw and not (boots and far):
             self.duplicated += 1
             return True
         if boots and (slot or far):
             return self._begin(sequence, raw)
-        onward = self._compare(raw, self._last)
-        if not slot and onward <= 0 and self._compare(raw, sequence) >= 0:
+        if not slot and self._fits(sequence, raw, distance):
             return self._take_late(sequence, raw, slot)
-        if onward < 0:
+        order = self._compare(raw, self._last, WINDOW)
+        if order is not None and order <= 0:
             return self._begin(sequence, raw)
         return self._go_on(sequence, raw, (ahead - 1) % NUMBERS)
+
+    def _fits(self, sequence: int, raw: bytes, distance: int) -> bool:
+        """Tell whether the time of a frame fits between those around its number."""
+        after = self._compare(raw, self._last, distance) or 0
+        before = self._compare(raw, sequence, WINDOW) or 0
+        return after <= 0 <= before
 
     def _take_late(self, sequence: int, raw: bytes, slot: bytes | None) -> bool:
         """Count a frame behind its turn; it was counted as lost if its number was passed over."""
@@ -143,23 +149,24 @@ class SequenceCounter:
     def _begins_anew(self, sequence: int, raw: bytes, ahead: int) -> bool:
         if _boots(raw) and sequence < NEAR_ZERO and ahead > sequence + 1:
             return True
-        return self._compare(raw, self._last) < 0
+        return self._compare(raw, self._last, WINDOW) == -1
 
-    def _compare(self, raw: bytes, number: int) -> int:
-        """Tell whether a frame's time is behind (1) or before (-1) that of an earlier number.
+    def _compare(self, raw: bytes, number: int, reach: int) -> int | None:
+        """Tell whether a frame's time is behind (1) or before (-1) that of another one, or it (0).
 
-        The latest frame of the same message up to that number counts; 0 if there is none.
+        That is the latest of the same message among `reach` numbers up to `number`; None if there
+        is none.
         """
         time, kind = _time(raw), raw[ID_AT:HEADER_BYTES]
         if time is None:
-            return 0
+            return None
         if self._doubtful and kind in self._times:
             return _order(time, self._times[kind])
-        for back in range(WINDOW):
+        for back in range(reach):
             slot = self._slots[(number - back) % NUMBERS]
             if slot and slot[ID_AT:HEADER_BYTES] == kind:
                 return _order(time, _time(slot) or 0)
-        return 0
+        return None
 
 
 def _order(time: int, before: int) -> int:

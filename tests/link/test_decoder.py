@@ -5,7 +5,7 @@ import pytest
 from designs import all_parameters, design
 from device import Device
 
-from hostkit.dialect import sample_bytes
+from hostkit.dialect import python_module, sample_bytes
 from hostkit.link.decoder import Decoder, digest_of, trace_of
 from hostkit.records import AXES
 
@@ -86,8 +86,6 @@ def test_noise_never_raises() -> None:
 
 
 def test_frame_of_an_unknown_message_is_counted_and_its_sequence_ignored() -> None:
-    from hostkit.dialect import python_module
-
     module = python_module()
     unknown = bytearray(module.MAVLink_heartbeat_message(0, 0, 0, 0, 4, 3).pack(DEVICE.mav))
     unknown[7:10] = (60000).to_bytes(3, "little")
@@ -96,3 +94,91 @@ def test_frame_of_an_unknown_message_is_counted_and_its_sequence_ignored() -> No
     statistics = decoder.statistics()
     assert statistics.unknown + statistics.bad == 1
     assert statistics.lost_frames == 0
+
+
+# --- False starts -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("length", range(0, 256, 5))
+@pytest.mark.parametrize("flags", [0, 1])
+def test_a_false_start_costs_no_frame(length: int, flags: int) -> None:
+    """Noise that looks like a header claims up to 280 bytes, frames and all."""
+    for number in (60_000, 0, 52_050):
+        false = bytes([0xFD, length, flags, 0, 7, 1, 1]) + number.to_bytes(3, "little")
+        decoder = Decoder()
+        got = decoder.feed(b"".join(FRAMES[:20]) + false + b"".join(FRAMES[20:60]))
+        assert [frame.raw for frame in got] == FRAMES[:60]
+        counted = decoder.statistics()
+        assert (counted.lost_frames, counted.unknown, counted.resyncs) == (0, 0, 1)
+        assert (counted.bad, counted.bad_bytes) == (1, len(false))
+        assert counted.crc_failures == (number != 60_000)
+
+
+def test_binary_bursts_lose_only_what_they_hit_and_alter_nothing() -> None:
+    rng = random.Random(7)
+    stream, intact = b"", []
+    for frame in Device(design()).frames(3000):
+        burst = rng.randbytes(rng.randrange(1, 200))
+        what = rng.randrange(30)
+        if what == 0:
+            stream += burst + frame
+        elif what == 1:
+            at = rng.randrange(1, len(frame) - 1)
+            stream += frame[:at] + burst + frame[at:]
+            continue
+        else:
+            stream += frame
+        intact.append(frame)
+    decoder = Decoder()
+    got = decoder.feed(stream + b"".join(FRAMES[:10]))
+    assert [frame.raw for frame in got] == intact + FRAMES[:10]
+    peer = python_module().MAVLink(None)
+    peer.robust_parsing = True
+    known = [m for m in peer.parse_buffer(stream) if m.get_type() in ("TILT_SAMPLE", "HEARTBEAT")]
+    assert len(known) < len(intact) - 50, "pymavlink drops what a false start claims"
+
+
+def test_a_burst_that_ends_in_a_false_start_does_not_hold_frames_back_for_long() -> None:
+    decoder = Decoder()
+    decoder.feed(b"\xfd\xff\x01\x00\x00\x01\x01\x00\x00\x00")
+    got = [len(decoder.feed(frame)) for frame in FRAMES[:10]]
+    assert sum(got) == 10
+    assert got.index(max(got)) <= 280 // min(map(len, FRAMES)) + 1
+
+
+def test_mavlink_1_is_not_heard() -> None:
+    module = python_module()
+    message = module.MAVLink_attitude_message(1, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    old = bytes(message.pack(DEVICE.mav, force_mavlink1=True))
+    assert old[0] == 0xFE
+    decoder = Decoder()
+    assert len(decoder.feed(FRAMES[0] + old + FRAMES[1])) == 2
+    assert (decoder.bad, decoder.bad_bytes, decoder.unknown) == (1, len(old), 0)
+
+
+def test_a_switched_off_checksum_stays_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pymavlink can be told by the environment to take anything."""
+    monkeypatch.setattr(python_module(), "MAVLINK_IGNORE_CRC", "1")
+    spoilt = bytearray(FRAMES[5])
+    spoilt[20] ^= 1
+    assert Decoder().feed(bytes(spoilt)) == []
+
+
+def test_memory_stays_flat_when_chunks_never_end_where_frames_do() -> None:
+    stream, decoder = b"".join(FRAMES), Decoder()
+    for _ in range(20):
+        for i in range(0, len(stream), 101):
+            decoder.feed(stream[i : i + 101])
+            assert decoder.pending_bytes < 300
+
+
+def test_a_message_is_what_pymavlink_makes_of_it() -> None:
+    parser = python_module().MAVLink(None)
+    for frame, message in zip(
+        Decoder().feed(b"".join(FRAMES)), parser.parse_buffer(b"".join(FRAMES)), strict=True
+    ):
+        assert frame.message == message
+        assert frame.message is frame.message
+        assert frame.name == message.get_type()
+        assert frame.source == (message.get_srcSystem(), message.get_srcComponent())
+        assert frame.sequence == message.get_seq()
