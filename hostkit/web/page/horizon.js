@@ -40,7 +40,7 @@ function dial(parent) {
 export class Horizon {
   constructor(axes) {
     this.axes = axes;
-    this.said = { at: 0, roll: NaN, pitch: NaN };
+    this.said = { at: -Infinity, roll: NaN, pitch: NaN };
     this.drawing = this.build(byId("horizon"));
     this.rows = axes.map((axis) => this.row(axis));
   }

@@ -5,6 +5,7 @@ const MOST_SAMPLES = 600_000;
 const FEWEST_SAMPLES = 60_000;
 const LONGEST_GAP_S = 30;
 const SEAM_S = 0.5;
+const LATEST_S = 1e9; // beyond it a double no longer tells samples apart
 
 export const BREAK = 1;
 export const MISMATCH = 2;
@@ -45,7 +46,7 @@ export class Store {
     const { t, epoch } = event;
     for (let i = 0; i < t.length; i++) {
       const time = t[i];
-      if (!Number.isFinite(time)) continue;
+      if (typeof time !== "number" || !(Math.abs(time) < LATEST_S)) continue;
       if (this.joining && epoch === this.epoch && time <= this.lastTime) continue;
       const follows = this.follows(time, epoch);
       if (!follows) this.seam(time);
