@@ -19,7 +19,7 @@ from hostkit.cli.params_output import (
 from hostkit.errors import HostkitError
 from hostkit.link.device_link import DeviceLink, SettingOutcome
 from hostkit.link.parameter_compare import Difference, differences
-from hostkit.link.parameter_entry import ParameterEntry
+from hostkit.link.parameter_entry import ParameterEntry, as_real32
 from hostkit.link.parameter_file import read_parameter_file, write_parameter_file
 
 STORED_LATER = "the device stores this when nothing was changed for 3 s; --store does it at once"
@@ -208,6 +208,7 @@ def _check(entries: Sequence[ParameterEntry], values: dict[str, float], choice: 
     _named(entries, tuple(values))
     facts = choice.facts()
     for name, value in values.items():
+        as_real32(name, value)
         fact = facts.get(name)
         if fact is not None and not fact.takes(value):
             unit = f" {fact.unit}" if fact.unit else ""

@@ -29,6 +29,7 @@ LISTING_S = 120.0
 SETTING_S = 10.0
 COMMAND_S = 90.0
 MOST_SOURCES = 64
+MOST_SHOWN = 8
 LEAST_PERIODS: Final = 10
 """Sample periods from which on the rate is told."""
 
@@ -256,7 +257,9 @@ class DeviceLink:
 
     def _only_one(self) -> Source:
         if len(self._heard) > 1:
-            said = ", ".join(f"{system}/{component}" for system, component in sorted(self._heard))
+            shown = sorted(self._heard)[:MOST_SHOWN]
+            said = ", ".join(f"{system}/{component}" for system, component in shown)
+            said += ", ..." if len(self._heard) > MOST_SHOWN else ""
             raise DeviceError(
                 f"several systems are on the link (system/component {said}) and none sends "
                 "samples; choose one with --system"

@@ -1,5 +1,6 @@
 """What is known of a device's parameters without asking it: units, limits, the design's values."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -51,7 +52,7 @@ class ParameterFacts:
 
     def takes(self, value: float) -> bool:
         """Tell whether the device takes a value; where the limits are not known, it may."""
-        if self.whole and value != int(value):
+        if not math.isfinite(value) or (self.whole and value != int(value)):
             return False
         if self.name == "SYS_ID" and value == FORBIDDEN_SYSTEM:
             return False
