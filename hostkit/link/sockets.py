@@ -60,7 +60,7 @@ class SocketTransport:
             except ConnectionError:
                 if self._stream:
                     raise
-                continue  # an answer of ours met nobody; the others may still talk
+                break  # Windows: an answer of ours met nobody; the others may still talk
             if self._stream:
                 if not part and not parts:
                     raise ConnectionResetError("closed by the peer")

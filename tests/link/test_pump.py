@@ -121,7 +121,9 @@ def test_release_closes_before_it_returns_and_take_opens() -> None:
 
 def test_orders_of_several_threads_are_all_carried_out() -> None:
     pump = pump_of(FakeTransport())
-    failures = []
+    failures, released = [], []
+    release = pump._port.release
+    pump._port.release = lambda: released.append(release())
 
     def order() -> None:
         try:
@@ -138,6 +140,7 @@ def test_orders_of_several_threads_are_all_carried_out() -> None:
     for thread in threads:
         thread.join(20)
     assert not failures
+    assert len(released) == 20
     wait_until(lambda: pump.state == "connected")
     pump.close()
 

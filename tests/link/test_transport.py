@@ -2,6 +2,7 @@
 
 import os
 import socket
+import termios
 import threading
 import time
 from pathlib import Path
@@ -118,6 +119,22 @@ def test_what_is_no_terminal_is_one_clear_error(tmp_path: Path) -> None:
             open_transport(port, 500_000)
 
 
+def test_other_urls_of_pyserial_are_refused(tmp_path: Path) -> None:
+    for url in (f"spy:///dev/null?file={tmp_path}/x", "loop://", "hwgrep://uno"):
+        with pytest.raises(DeviceError, match="hostkit takes socket and rfc2217"):
+            open_transport(url, 500_000)
+    assert not list(tmp_path.iterdir())
+
+
+def test_port_that_hangs_up_while_it_is_opened_is_an_error(cable: Cable, monkeypatch) -> None:
+    def hang_up(*_: object) -> None:
+        raise termios.error(5, "Input/output error")
+
+    monkeypatch.setattr(termios, "tcflush", hang_up)
+    with pytest.raises(DeviceError, match="Input/output error"):
+        open_transport(str(cable.path), 500_000)
+
+
 def test_rate_of_an_open_port_can_be_changed(cable: Cable) -> None:
     port = SerialTransport(str(cable.path), 115_200)
     assert port.set_baud(57_600)
@@ -221,10 +238,31 @@ def test_udp_read_takes_all_datagrams_that_wait() -> None:
         for k in range(100):
             sender.sendto(bytes([k]), ("127.0.0.1", number))
         sender.sendto(b"", ("127.0.0.1", number))
-    assert read_until(port, lambda got: len(got) >= 100) == bytes(range(100))
+    assert port.read(5.0) == bytes(range(100))
     port.close()
     port.write(b"x")
     assert port.read(0.0) is None
+
+
+def test_udp_answer_that_met_nobody_is_no_loss() -> None:
+    class Windows(socket.socket):
+        """There an unreachable peer shows as a reset at the next read."""
+
+        resets = 1
+
+        def recvfrom(self, size: int):
+            if self.resets:
+                self.resets -= 1
+                raise ConnectionResetError("10054")
+            return super().recvfrom(size)
+
+    with Windows(socket.AF_INET, socket.SOCK_DGRAM) as ours:
+        ours.bind(("127.0.0.1", 0))
+        port = SocketTransport(ours)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"still here", ours.getsockname())
+        assert port.read(5.0) == b""
+        assert (port.read(5.0), port.state) == (b"still here", "connected")
 
 
 def test_tcp_over_ip_6() -> None:
