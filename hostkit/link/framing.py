@@ -5,28 +5,34 @@ included, and keeps all bytes for as long as its buffer never runs empty. Here a
 costs one byte, and the scan goes on behind it.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
 from hostkit.dialect import FRAME_OVERHEAD_BYTES, SIGNATURE_BYTES, python_module
 
-MAGIC = 0xFD
 HEADER_BYTES = 10
 FLAGS_AT, SEQUENCE_AT, SYSTEM_AT, COMPONENT_AT, ID_AT = 2, 4, 5, 6, 7
+
 SIGNED = 0x01
 """The only flag a receiver may meet; a frame with another one cannot be understood."""
 LONGEST_FRAME_BYTES = 255 + FRAME_OVERHEAD_BYTES + SIGNATURE_BYTES
+
+_START = re.compile(rb"\xfd(?:.(?:[\x00\x01]|\Z)|\Z)", re.DOTALL)
+"""Where a frame may begin: its flags are bearable, or are still to come."""
 
 Found = tuple[str, bytes]
 """Name of a message and its whole frame."""
 
 
 @lru_cache(maxsize=1)
-def _names() -> dict[int, tuple[str, bytes]]:
+def _names() -> dict[bytes, tuple[str, bytes]]:
     """Return name and extra byte of the checksum for each message id of the dialect."""
-    known = python_module().mavlink_map
-    return {number: (kind.msgname, bytes([kind.crc_extra])) for number, kind in known.items()}
+    return {
+        number.to_bytes(3, "little"): (kind.msgname, bytes([kind.crc_extra]))
+        for number, kind in python_module().mavlink_map.items()
+    }
 
 
 @lru_cache(maxsize=1)
@@ -95,19 +101,15 @@ class Framer:
         found: list[Found] = []
         at, size = 0, len(buffer)
         while at < size:
-            if buffer[at] != MAGIC:
-                at = self._skip_to_magic(buffer, at)
+            if not _START.match(buffer, at):
+                at = self._skip_to_start(buffer, at)
                 continue
-            if size - at <= ID_AT + 2:
-                if size - at > FLAGS_AT and buffer[at + FLAGS_AT] > SIGNED:
-                    at = self._skip(at, 1)
-                    continue
+            if size - at < HEADER_BYTES:
                 break
+            known = names.get(buffer[at + ID_AT : at + HEADER_BYTES])
             flags = buffer[at + FLAGS_AT]
-            known = names.get(buffer[at + 7] | buffer[at + 8] << 8 | buffer[at + 9] << 16)
-            if flags > SIGNED or known is None:
-                if flags <= SIGNED:
-                    self._claim(buffer, at)
+            if known is None:
+                self._claim(buffer, at)
                 at = self._skip(at, 1)
                 continue
             ends = at + HEADER_BYTES + buffer[at + 1]
@@ -133,9 +135,9 @@ class Framer:
             self._count_bad(rest)
         self._lost, self._due_in = False, -1
 
-    def _skip_to_magic(self, buffer: bytes, at: int) -> int:
-        found = buffer.find(MAGIC, at)
-        return self._skip(at, (found if found >= 0 else len(buffer)) - at)
+    def _skip_to_start(self, buffer: bytes, at: int) -> int:
+        start = _START.search(buffer, at)
+        return self._skip(at, (len(buffer) if start is None else start.start()) - at)
 
     def _skip(self, at: int, count: int) -> int:
         """Pass over bytes: they belong to an unknown frame, or to none."""

@@ -111,8 +111,10 @@ class SequenceCounter:
 
     def _go_on(self, sequence: int, raw: bytes, missing: int) -> bool:
         self._weigh_doubt(raw, missing)
-        for number in range(sequence - missing, sequence):
-            self._slots[number % NUMBERS] = b""
+        begin = sequence - missing
+        self._slots[max(begin, 0) : sequence] = [b""] * (sequence - max(begin, 0))
+        if begin < 0:
+            self._slots[begin:] = [b""] * -begin
         self.lost += missing
         self.frames += 1
         self._slots[sequence] = raw

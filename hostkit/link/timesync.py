@@ -96,6 +96,7 @@ class TimeSync:
     def begin_epoch(self) -> None:
         """Forget the device's clock: it may have begun anew. The figures stay."""
         self._answers: deque[Answer] = deque(maxlen=ANSWERS)
+        self._best: Answer | None = None
         self._open: deque[int] = deque(maxlen=MOST_OPEN)
         self._asked = 0
         self._due_ns = self._now_ns()
@@ -151,6 +152,7 @@ class TimeSync:
             trip_ns if self._shortest_ns is None else min(self._shortest_ns, trip_ns)
         )
         self._clock_ppm = _clock_ppm(list(self._answers))
+        self._best = self._best_recent()
 
     def _unwrapped(self, offset_ns: int) -> int:
         """Return the offset that is nearest to the last, if a 32-bit clock of us has wrapped."""
@@ -166,15 +168,17 @@ class TimeSync:
         explained_ns = (answer.round_trip_ns + last.round_trip_ns) / 2 + JUMP_NS
         return abs(answer.offset_ns - last.offset_ns) > explained_ns
 
+    def _best_recent(self) -> Answer:
+        newest_ns = self._answers[-1].host_ns
+        recent = (a for a in self._answers if newest_ns - a.host_ns <= RECENT_NS)
+        return min(recent, key=lambda a: a.round_trip_ns)
+
     def _offset_ns(self, host_ns: int) -> int | None:
         """Return the device's time minus the host's at a moment."""
-        if not self._answers:
+        if self._best is None:
             return None
-        newest_ns = self._answers[-1].host_ns
-        recent = [a for a in self._answers if newest_ns - a.host_ns <= RECENT_NS]
-        best = min(recent, key=lambda a: a.round_trip_ns)
         drift = 0.0 if self._clock_ppm is None else self._clock_ppm * 1e-6
-        return best.offset_ns + round(drift * (host_ns - best.host_ns))
+        return self._best.offset_ns + round(drift * (host_ns - self._best.host_ns))
 
     def arrived(self, time_us: NDArray[np.int64], received_ns: int) -> None:
         """Take the times of samples that came together at one moment.
