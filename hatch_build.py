@@ -1,4 +1,4 @@
-"""Puts uPlot, which draws the charts of the monitor page, into the wheel if npm installed it."""
+"""Puts uPlot, which draws the charts of the monitor page, into what is built."""
 
 from pathlib import Path
 from typing import Any
@@ -6,22 +6,30 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PAGE = "hostkit/web/page"
-PACKAGE = f"{PAGE}/node_modules/uplot"
-FILES = ("dist/uPlot.esm.js", "dist/uPlot.min.css", "LICENSE", "package.json")
+VENDOR = f"{PAGE}/vendor"
+FILES = ("uPlot.esm.js", "uPlot.min.css", "LICENSE", "package.json")
 
 
-class UplotHook(BuildHookInterface):  # type: ignore[type-arg]
+class UplotHook(BuildHookInterface):
     """Adds the few files of uPlot that the page needs, with their licence."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Name the files; a wheel without them works, and its page says what is missing."""
-        package = Path(self.root) / PACKAGE
-        if not package.is_dir():
-            self.app.display_warning(
-                f"uPlot is not installed, so the page of `hostkit monitor --web` will have no "
-                f"charts: npm install --prefix {PAGE}"
-            )
+        if version == "editable":  # the page is read where npm put it
             return
-        for file in FILES:
-            name = Path(file).name
-            build_data["force_include"][str(package / file)] = f"{PAGE}/vendor/{name}"
+        for name in FILES:
+            file = self._find(name)
+            if file is None:
+                self.app.display_warning(
+                    f"{name} of uPlot is missing, so the page of `hostkit monitor --web` will "
+                    f"have no charts: npm install --prefix {PAGE}"
+                )
+                return
+            build_data["force_include"][str(file)] = f"{VENDOR}/{name}"
+
+    def _find(self, name: str) -> Path | None:
+        """Look where npm puts it, and where an sdist has it."""
+        root = Path(self.root)
+        package = root / PAGE / "node_modules" / "uplot"
+        places = (package / "dist" / name, package / name, root / VENDOR / name)
+        return next((place for place in places if place.is_file()), None)

@@ -1,7 +1,7 @@
 // Figures of the verdict, of the link and of the device.
 
-import { byId, pairs, table, text } from "./dom.js";
-import { bytes, clock, count, degrees, fixed, withUnit } from "./format.js";
+import { byId, element, pairs, table, text } from "./dom.js";
+import { bytes, clock, count, degrees, figure, fixed, withUnit } from "./format.js";
 
 const bad = (value) => (value > 0 ? "bad" : "");
 const warn = (value) => (value > 0 ? "warn" : "");
@@ -32,6 +32,18 @@ export function showFigures(report) {
     ["Late", count(report.late), warn(report.late)],
     ["Unjudged", count(report.unjudged), warn(report.unjudged)],
   ]);
+  showRetuned(report.retuned ?? []);
+}
+
+function showRetuned(retuned) {
+  const lines = retuned.map(({ name, device_value, design_value, unit }) =>
+    `${name} ${withUnit(figure(device_value), unit)}, design ${figure(design_value)}`);
+  const list = byId("retuned-list");
+  while (list.children.length > lines.length) list.lastChild.remove();
+  lines.forEach((said, index) => {
+    if (!list.children[index]) list.append(element("li"));
+    text(list.children[index], said);
+  });
 }
 
 export function showLink(snapshot) {
@@ -55,6 +67,18 @@ export function showLink(snapshot) {
     ...optional("Page missed", snapshot.missed_batches),
   ]);
   showSources(link.sources ?? []);
+  showForwards(snapshot.forwards ?? []);
+}
+
+function showForwards(forwards) {
+  byId("forwards").hidden = !forwards.length;
+  const rows = forwards.slice(0, 20).map((place) => [
+    place.address,
+    count(place.sent_frames),
+    count(place.dropped_frames),
+    count(place.received_frames),
+  ]);
+  table(byId("forwards"), ["Forwarded to", "sent", "dropped", "back"], rows);
 }
 
 function optional(name, value) {

@@ -41,23 +41,31 @@ export class Horizon {
   constructor(axes) {
     this.axes = axes;
     this.said = { at: -Infinity, roll: NaN, pitch: NaN };
-    this.drawing = this.build(byId("horizon"));
+    this.world = this.build(byId("horizon"));
     this.rows = axes.map((axis) => this.row(axis));
   }
 
   build(box) {
     const svg = shape("svg", { viewBox: "-130 -120 260 240", "aria-hidden": "true" }, box);
-    const world = shape("g", {}, svg);
-    shape("rect", { x: -400, y: -700, width: 800, height: 700 }, world, "sky");
-    shape("rect", { x: -400, y: 0, width: 800, height: 700 }, world, "ground");
-    shape("path", { d: "M-400 0H400" }, world, "skyline");
-    ladder(world);
+    const sky = shape("g", {}, svg);
+    shape("rect", { x: -400, y: -700, width: 800, height: 700 }, sky, "sky");
+    shape("rect", { x: -400, y: 0, width: 800, height: 700 }, sky, "ground");
+    shape("path", { d: "M-400 0H400" }, sky, "skyline");
+    const rungs = this.clipped(svg);
+    ladder(rungs);
     this.ghost = shape("path", { d: "M-400 0H400" }, svg, "ghost");
     dial(svg);
     this.pointer = shape("path", { d: "M0 -101l-6 11h12z" }, svg, "pointer");
     shape("path", { d: "M-62 0h34l8 8M62 0h-34l-8 8" }, svg, "craft");
     shape("circle", { r: 2.5 }, svg, "craft-dot");
-    return world;
+    return [sky, rungs];
+  }
+
+  /** The rungs end below the dial. */
+  clipped(svg) {
+    const clip = shape("clipPath", { id: "horizon-clip" }, svg);
+    shape("circle", { r: 84 }, clip);
+    return shape("g", {}, shape("g", { "clip-path": "url(#horizon-clip)" }, svg));
   }
 
   row(axis) {
@@ -73,7 +81,7 @@ export class Horizon {
   show(sample) {
     if (!sample) return;
     const of = (axis, kind) => (Number.isFinite(sample[axis]?.[kind]) ? sample[axis][kind] : 0);
-    this.turn(this.drawing, of("roll", "device"), of("pitch", "device"));
+    for (const part of this.world) this.turn(part, of("roll", "device"), of("pitch", "device"));
     const known = this.axes.every((axis) => Number.isFinite(sample[axis].model));
     this.ghost.style.visibility = known ? "visible" : "hidden";
     if (known) this.turn(this.ghost, of("roll", "model"), of("pitch", "model"));
