@@ -114,9 +114,12 @@ def make_app(
 
 
 @contextlib.contextmanager
-def running(folder: Path, **options) -> Iterator[tuple[Server, httpx.Client]]:
+def running(
+    folder: Path, *, controls: FakeControls | None = None, **options
+) -> Iterator[tuple[Server, httpx.Client]]:
     """Run a server, and give a client that is signed in."""
-    server = Server(FakeControls(folder=folder), reports=FakeReports(), folder=folder, **options)
+    controls = controls or FakeControls(folder=folder)
+    server = Server(controls, reports=FakeReports(), folder=folder, **options)
     try:
         url = server.start()
         with httpx.Client(base_url=url.partition("?")[0], timeout=10.0) as client:
