@@ -1,6 +1,5 @@
 """One device at a port, spoken with by a program that waits for its answers."""
 
-from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import TracebackType
@@ -9,12 +8,13 @@ from typing import Any, Final
 from hostkit.errors import DeviceError, HostkitError
 from hostkit.link.clock import SystemClock
 from hostkit.link.commands import CommandClient, CommandStatus
-from hostkit.link.decoder import Decoder, Frame, Source, digest_of
+from hostkit.link.decoder import Decoder, Frame, Source
 from hostkit.link.encoder import Encoder
 from hostkit.link.exchange import MonotonicClock
 from hostkit.link.parameter_entry import ParameterEntry
 from hostkit.link.parameter_facts import ParameterFacts
 from hostkit.link.parameters import ParameterClient
+from hostkit.link.presence import Presence
 from hostkit.link.signing import SigningKey
 from hostkit.link.transport import Transport
 
@@ -28,13 +28,8 @@ SETTLE_S = 1.5
 LISTING_S = 120.0
 SETTING_S = 10.0
 COMMAND_S = 90.0
-MOST_SOURCES = 64
-MOST_SHOWN = 8
-LEAST_PERIODS: Final = 10
-"""Sample periods from which on the rate is told."""
 
-GROUND_STATION = 6
-"""MAV_TYPE_GCS."""
+KEY_WANTED: Final = "the device signs its messages and hears signed ones only; give --signing-key"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,18 +78,13 @@ class DeviceLink:
         clock: MonotonicClock | None = None,
     ) -> None:
         self._transport = transport
-        self._system = system
         self._clock = SystemClock() if clock is None else clock
         self._encoder = Encoder(signing)
         self._decoder = Decoder(signing)
         self.parameters = ParameterClient(self._send, self._clock, facts=facts)
         self.commands = CommandClient(self._send, self._clock)
-        self._heard: Counter[Source] = Counter()
-        self._sampling: Source | None = None
-        self._first: tuple[int, int] | None = None
-        self._latest: tuple[int, int] | None = None
-        self._digest: str | None = None
-        self._bytes = 0
+        self._presence = Presence(system=system)
+        self._signing = signing is not None
         self._epoch = transport.epoch
 
     def __enter__(self) -> "DeviceLink":
@@ -111,16 +101,12 @@ class DeviceLink:
     @property
     def digest(self) -> str | None:
         """Digest of the device's design; None while it has sent no sample."""
-        return self._digest
+        return self._presence.digest
 
     @property
     def rate_hz(self) -> float | None:
         """Sample rate by the device's own time; None while too little has come."""
-        if self._first is None or self._latest is None:
-            return None
-        periods = self._latest[0] - self._first[0]
-        time_us = self._latest[1] - self._first[1]
-        return periods * 1e6 / time_us if periods >= LEAST_PERIODS and time_us > 0 else None
+        return self._presence.rate_hz
 
     def find(self) -> Source:
         """Wait for the device and return its system and component.
@@ -134,11 +120,13 @@ class DeviceLink:
 
         def found() -> bool:
             waited = self._clock.monotonic() - begun_s
-            return self._sampling is not None or (bool(self._heard) and waited >= SETTLE_S)
+            return self._presence.sampling is not None or (
+                bool(self._presence.heard) and waited >= SETTLE_S
+            )
 
         if not self.wait(found, FIND_S):
-            raise DeviceError(self._nobody())
-        source = self._sampling or self._only_one()
+            raise DeviceError(self._presence.nobody(FIND_S, self._decoder.statistics()))
+        source = self._presence.device()
         self.parameters.attend(source)
         self.commands.attend(source)
         return source
@@ -154,6 +142,8 @@ class DeviceLink:
         self.parameters.request_all()
         self.wait(lambda: not self.parameters.listing, LISTING_S)
         if not self.parameters.complete:
+            if self._presence.signed and not self._signing:
+                raise DeviceError(KEY_WANTED)
             error = self.parameters.listing_error or f"no list came in {LISTING_S:g} s"
             raise DeviceError(error)
         return tuple(sorted(self.parameters.entries.values(), key=lambda entry: entry.index))
@@ -209,7 +199,6 @@ class DeviceLink:
             if data is None:
                 raise DeviceError("the device went away; check its cable and power")
             self._notice_epoch()
-            self._bytes += len(data)
             for frame in self._decoder.feed(data):
                 self._take(frame)
         return True
@@ -223,29 +212,13 @@ class DeviceLink:
             self._decoder.begin_epoch()
             self.parameters.begin_epoch()
             self.commands.begin_epoch()
-            self._first = None
+            self._presence.begin_epoch()
 
     def _take(self, frame: Frame) -> None:
-        if self._system not in (None, frame.source[0]):
+        if not self._presence.take(frame):
             return
-        if frame.name == "HEARTBEAT" and int(frame.message.type) != GROUND_STATION:
-            if frame.source in self._heard or len(self._heard) < MOST_SOURCES:
-                self._heard[frame.source] += 1
-        elif frame.name == "TILT_SAMPLE":
-            self._take_sample(frame)
         self.parameters.take(frame)
         self.commands.take(frame)
-
-    def _take_sample(self, frame: Frame) -> None:
-        if self._sampling is None:
-            self._sampling = frame.source
-        if frame.source != self._sampling:
-            return
-        self._digest = digest_of(frame)
-        now = (int(frame.message.sequence), int(frame.message.time_usec))
-        if self._first is None or self._latest is None or now[0] < self._latest[0]:
-            self._first = now
-        self._latest = now
 
     def _outcome(self, name: str, asked: float) -> SettingOutcome:
         entry = self.parameters.entries.get(name)
@@ -254,23 +227,3 @@ class DeviceLink:
             error = "the device did not answer in time"
         in_use = None if entry is None else entry.value
         return SettingOutcome(name=name, asked=asked, in_use=in_use, error=error)
-
-    def _only_one(self) -> Source:
-        if len(self._heard) > 1:
-            shown = sorted(self._heard)[:MOST_SHOWN]
-            said = ", ".join(f"{system}/{component}" for system, component in shown)
-            said += ", ..." if len(self._heard) > MOST_SHOWN else ""
-            raise DeviceError(
-                f"several systems are on the link (system/component {said}) and none sends "
-                "samples; choose one with --system"
-            )
-        return next(iter(self._heard))
-
-    def _nobody(self) -> str:
-        if self._system is not None and self._decoder.frames:
-            return f"system {self._system} was not heard in {FIND_S:g} s, but others were"
-        if self._decoder.frames:
-            return f"MAVLink came in {FIND_S:g} s, but no device: no sample and no heartbeat"
-        if self._bytes:
-            return "bytes come that are not MAVLink 2; is the --baud rate that of the device?"
-        return f"nothing was received in {FIND_S:g} s; is the device powered and wired?"

@@ -84,10 +84,8 @@ class Forwarder:
         for _ in range(DATAGRAMS_PER_POLL):
             try:
                 datagram = self._socket.recv(LARGEST_DATAGRAM_BYTES)
-            except ConnectionRefusedError:
-                continue
             except OSError:
-                break
+                break  # nothing more, or a refusal of what was sent before
             frames += self._frames_of(datagram)
         return frames
 

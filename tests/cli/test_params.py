@@ -1,14 +1,17 @@
 """``hostkit params`` with a device in Python, and with the real firmware at a real pty."""
 
+import contextlib
 import json
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+import serial
 from answering import AnsweringDevice, ManualClock
 from boards import require_or_skip
 from designs import design
@@ -16,6 +19,8 @@ from pymavlink.mavparm import MAVParmDict
 
 from hostkit.cli.main import run
 from hostkit.design_file import digest, save_design
+from hostkit.link.encoder import Encoder
+from hostkit.link.signing import SigningKey, setup_signing_message
 from hostkit.recordings import save
 from hostkit.simulation import SensorErrors, simulate
 
@@ -188,10 +193,10 @@ def test_a_file_system_that_refuses_leaves_no_file(device: AnsweringDevice, caps
 
 
 @pytest.fixture(scope="module")
-def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]]:
-    """The firmware of the host target behind a pseudo-terminal, and its design."""
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A design, and a recording of a sensor at rest."""
     require_or_skip("gcc", "make")
-    folder = tmp_path_factory.mktemp("params")
+    found = tmp_path_factory.mktemp("params")
     recording = simulate(
         "rest",
         duration_s=5.0,
@@ -200,25 +205,54 @@ def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
         errors=SensorErrors(),
         rng=np.random.default_rng(1),
     )
-    save(recording, folder / "rest.csv")
-    save_design(DESIGN, folder / "design.json")
+    save(recording, found / "rest.csv")
+    save_design(DESIGN, found / "design.json")
+    return found
+
+
+@contextlib.contextmanager
+def served(folder: Path, *options: str) -> Iterator[str]:
+    """The firmware of the host target behind a pseudo-terminal."""
     command = [sys.executable, "-m", "hostkit", "emulate", str(folder / "design.json"), "--pty"]
-    command += ["--target", "host", "--recording", str(folder / "rest.csv")]
+    command += ["--target", "host", "--recording", str(folder / "rest.csv"), *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
         try:
             assert p.stdout is not None
             path = p.stdout.readline().strip()
             assert path, p.stderr and p.stderr.read()
-            yield path, folder / "design.json"
+            yield path
         finally:
             p.send_signal(signal.SIGINT)
             p.communicate(timeout=30)
 
 
-def test_the_firmware_s_parameters_go_through_all_of_it(
-    board: tuple[str, Path], tmp_path: Path, capsys
+def test_a_device_with_a_secret_is_spoken_with_by_its_key(
+    folder: Path, tmp_path: Path, capsys
 ) -> None:
-    port, design_file = board
+    key_file = tmp_path / "key"
+    key_file.write_bytes(bytes(range(32)))
+    key_file.chmod(0o600)
+    key = SigningKey.read(key_file)
+    with served(folder, "--signing") as port:
+        with serial.Serial(port, timeout=10.0) as first:
+            assert first.read(500)
+            first.write(Encoder(key).pack(setup_signing_message(key, 1, time.time())))
+            first.flush()
+            assert first.read(2000)
+        words = ["set", "FILT_TAU=1.5", "--port", port, "--signing-key", str(key_file), "--json"]
+        assert run(["params", *words]) == 0
+    (result,) = json.loads(capsys.readouterr().out)["results"]
+    assert result["in_use"] == pytest.approx(1.5, rel=1e-5)
+
+
+def test_the_firmware_s_parameters_go_through_all_of_it(
+    folder: Path, tmp_path: Path, capsys
+) -> None:
+    with served(folder) as port:
+        go_through_all(port, folder / "design.json", tmp_path, capsys)
+
+
+def go_through_all(port: str, design_file: Path, tmp_path: Path, capsys) -> None:
     file = str(tmp_path / "bench.parm")
 
     def params(*words: str, code: int = 0, known: bool = True) -> dict:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import serial
 from boards import require_or_skip
 from designs import design
 from station import PATIENCE_S, GroundStation, require_station
@@ -47,10 +48,17 @@ def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
             assert p.stdout is not None
             path = p.stdout.readline().strip()
             assert path, p.stderr and p.stderr.read()
+            start(path)
             yield path, folder / "design.json"
         finally:
             p.send_signal(signal.SIGINT)
             p.communicate(timeout=30)
+
+
+def start(pty: str) -> None:
+    """The emulator starts with the first reader, which takes seconds on a busy machine."""
+    with serial.Serial(pty, timeout=PATIENCE_S) as reader:
+        assert reader.read(1), f"nothing came in {PATIENCE_S:g} s"
 
 
 class Plotter:
@@ -111,6 +119,7 @@ def test_a_station_sets_a_parameter_through_the_monitor(
         finally:
             monitor.send_signal(signal.SIGINT)
             out, err = monitor.communicate(timeout=30)
+            print(err[-2000:])
             station.close()
             plotter.close()
     result = json.loads(out)

@@ -7,7 +7,7 @@ from answering import AnsweringDevice, ManualClock, Sender
 
 from hostkit.errors import DeviceError, HostkitError
 from hostkit.link.device_link import DeviceLink
-from hostkit.link.signing import SigningKey
+from hostkit.link.signing import SigningKey, sign_with
 
 
 class Stream:
@@ -133,8 +133,17 @@ def test_silence_noise_and_an_end_are_told_apart(said: bytes | None, says: str) 
 
 def test_without_the_key_s_signature_nobody_is_believed() -> None:
     key = SigningKey(secret=b"k" * 32)
-    with pytest.raises(DeviceError):
+    with pytest.raises(DeviceError, match="messages were refused: they are not signed with this"):
         listening(Sender().sample, signing=key).find()
+
+
+def test_a_device_that_signs_and_does_not_answer_asks_for_the_key() -> None:
+    link, device = joined()
+    sign_with(device.sender._mav, SigningKey(secret=b"k" * 32))
+    device.hears = lambda message: False
+    link.find()
+    with pytest.raises(DeviceError, match="give --signing-key"):
+        link.fetch()
 
 
 def test_another_opening_of_the_port_ends_a_setting() -> None:
@@ -160,4 +169,4 @@ def test_a_flood_of_systems_fills_no_memory() -> None:
     link = DeviceLink(Stream(clock, lambda: flood), clock=clock)
     with pytest.raises(DeviceError, match=r"several systems .* \.\.\.\)"):
         link.find()
-    assert len(link._heard) <= 64
+    assert len(link._presence.heard) <= 64

@@ -91,6 +91,15 @@ def test_what_is_no_frame_does_not_reach_the_device(joined) -> None:
     assert forwarder.state().refused_bytes == noise
 
 
+def test_a_frame_in_two_datagrams_is_none(joined) -> None:
+    forwarder, peer, _ = joined
+    frame = setting()
+    peer.say(frame[:20])
+    peer.say(frame[20:])
+    assert forwarder.receive() == []
+    assert forwarder.state().refused_bytes == len(frame)
+
+
 def test_others_are_not_heard(joined) -> None:
     forwarder, peer, _ = joined
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:

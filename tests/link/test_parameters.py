@@ -1,11 +1,14 @@
 """The parameter protocol from the host's side: losses, lies and floods."""
 
+import contextlib
 import math
 
 import numpy as np
 import pytest
 from answering import AnsweringDevice, M, ManualClock, Sender
 from designs import design
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hostkit.errors import HostkitError
 from hostkit.link.decoder import Decoder
@@ -312,3 +315,39 @@ def test_facts_are_the_firmware_s(host_folder) -> None:
     of_filter = {n: f.design_value for n, f in facts.items() if f.design_value is not None}
     assert of_filter == {n: told[n] for n in of_filter}
     assert set(told) - set(of_filter) == {"SYS_ID", "CAL_START"}
+
+
+NAMES = st.sampled_from(["SYS_ID", "FILT_TAU", "X", "", "A B", "Y" * 16])
+TOLD = st.tuples(NAMES, st.floats(width=32), st.integers(0, 65535), st.integers(0, 65535))
+
+
+@given(st.lists(st.one_of(TOLD, st.sampled_from(["set", "list", "wait", "epoch"])), max_size=40))
+@settings(max_examples=40, deadline=None)
+def test_whatever_a_device_tells_entries_are_numbers_and_requests_few(steps: list) -> None:
+    clock, sender, sent = ManualClock(), Sender(), []
+    client = ParameterClient(sent.append, clock, target=(1, 1))
+    for step in steps:
+        if step == "set":
+            with contextlib.suppress(HostkitError):
+                client.set("FILT_TAU", 1.0)
+        elif step == "list":
+            client.request_all()
+        elif step == "wait":
+            clock.now_s += 1.0
+        elif step == "epoch":
+            client.begin_epoch()
+        else:
+            client.take(sender.value(*step))
+        client.poll()
+    assert len(sent) <= 8 * len(steps)
+    assert all(math.isfinite(entry.value) for entry in client.entries.values())
+    assert set(client.entries) <= {"SYS_ID", "FILT_TAU", "X", "Y" * 16}
+    for _ in range(100):
+        clock.now_s += 1.0
+        client.poll()
+    quiet = len(sent)
+    clock.now_s += 1.0
+    client.poll()
+    assert len(sent) == quiet
+    assert not client.setting
+    assert not client.listing
