@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 from designs import all_parameters, design
 from device import Device
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from judging import feed, judge
 
 from hostkit.errors import HostkitError
 from hostkit.link.decoder import Decoder
+from hostkit.records import AngleTrace
 from hostkit.validation import Thresholds, Validator, device_parameters
 
 SAMPLES = 400
@@ -446,3 +449,53 @@ def test_a_huge_gap_is_counted_and_costs_nothing() -> None:
     report = judge(frames).report(Thresholds())
     assert report.lost > 2**30
     assert report.verdict == "fail"
+
+
+NUMBERS = st.sampled_from([0, 1, 2, 63, 1025, 2**31 - 1, 2**31, 2**32 - 1]) | st.integers(0, 2**32)
+WORDS = st.sampled_from([-(2**31), -1, 0, 2**31 - 1]) | st.integers(-(2**31), 2**31 - 1)
+COUNTS = st.sampled_from([-32768, -1, 0, 32767])
+TIMES = st.sampled_from([0, 2**63 - 1, -(2**63), -1]) | st.integers(0, 10**9)
+SAMPLE = st.tuples(NUMBERS, TIMES, COUNTS, COUNTS, WORDS, WORDS, st.booleans(), st.booleans())
+VALUE = st.tuples(
+    st.sampled_from([p.name for p in device_parameters(design())]) | st.text(max_size=16),
+    st.floats(width=32) | st.sampled_from([0.5, 0.01, -0.01]),
+)
+
+
+@pytest.mark.parametrize("options", [{}, {"tolerance_rad": 1e-5}, {"as_designed": True}])
+@pytest.mark.parametrize("d", [design(), all_parameters()], ids=["eta", "all"])
+def test_nothing_that_a_device_says_breaks_it(d, options: dict[str, object]) -> None:
+    @settings(max_examples=60, deadline=None)
+    @given(st.lists(st.lists(SAMPLE, max_size=12) | VALUE | st.just("doubt"), max_size=8))
+    def hold(said: list) -> None:
+        validator, came = Validator(d, **options), 0
+        for piece in said:
+            if piece == "doubt":
+                validator.doubt_parameters()
+            elif isinstance(piece, tuple):
+                validator.told(*piece)
+            else:
+                came += len(piece)
+                judged = validator.add(trace_from(piece, len(validator.spec.state_per_unit)))
+                assert not np.isinf(judged.residual_rad).any()
+        report = validator.report(Thresholds(max_lag_ms=1.0))
+        assert report.samples + report.repeated == came
+        assert 0 <= report.mismatches <= report.checked <= report.samples
+        assert 0 <= report.lost < 2**32 * (came + 1)
+        assert report.verdict != "pass" or report.checked
+
+    hold()
+
+
+def trace_from(rows: list, words: int) -> AngleTrace:
+    columns = [np.array([row[i] for row in rows], dtype=np.int64) for i in range(8)]
+    number, time, accel, gyro, first, second, restarted, retuned = columns
+    return AngleTrace(
+        sequence=number % 2**32,
+        time_us=time,
+        accel_count=np.stack([accel, gyro, accel], axis=1).reshape(-1, 3),
+        gyro_count=np.stack([gyro, gyro, accel], axis=1).reshape(-1, 3),
+        state_raw=np.stack([first, second, second, first], axis=1).reshape(-1, 4)[:, :words],
+        restarted=restarted != 0,
+        retuned=retuned != 0,
+    )
