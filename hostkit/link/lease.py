@@ -65,7 +65,7 @@ def socket_path(device: str) -> Path | None:
     folder = lease_folder()
     if folder is None:
         return None
-    real = str(Path(device).resolve())
+    real = os.path.realpath(device)
     return folder / f"{hashlib.sha256(real.encode()).hexdigest()[:16]}.sock"
 
 

@@ -24,12 +24,12 @@ def user_of(device: str, *, proc: Path = PROC, locks: Path = LOCKS) -> str:
     Programs of other users are not seen unless they lock the port as hostkit does.
     """
     try:
-        port = Path(device).resolve(strict=True)
-        identity = port.stat()
-    except (OSError, RuntimeError):
+        port = os.path.realpath(device)
+        identity = Path(port).stat()
+    except OSError:
         return ""
     for process in proc.glob("[0-9]*"):
-        if _has_open(process, str(port)):
+        if _has_open(process, port):
             return f"{_name_of(process)} ({process.name})"
     key = f"{os.major(identity.st_dev):02x}:{os.minor(identity.st_dev):02x}:{identity.st_ino}"
     with contextlib.suppress(OSError):

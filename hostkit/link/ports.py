@@ -1,5 +1,6 @@
 """Which serial ports there are, what is behind them, and finding one again."""
 
+import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -61,6 +62,11 @@ class PortInfo:
         return f"{self.device} ({', '.join(part for part in parts if part)})"
 
 
+def _is_one(first: str, second: str) -> bool:
+    """Tell whether two names are of one port; unlike pathlib's, this never raises at a loop."""
+    return os.path.realpath(first) == os.path.realpath(second)
+
+
 Listing = Callable[[], tuple[PortInfo, ...]]
 
 
@@ -74,11 +80,11 @@ def list_ports() -> tuple[PortInfo, ...]:
 
 def port_info(device: str) -> PortInfo:
     """Return what is known of a port by its name, which may be a link or a pseudo-terminal."""
-    real = Path(device).resolve()
     for port in list_ports():
-        if Path(port.device).resolve() == real:
+        if _is_one(port.device, device):
             return replace(port, device=device)
-    return PortInfo(device=device)
+    is_pty = os.path.realpath(device).startswith("/dev/pts/")
+    return PortInfo(device=device, description="pseudo-terminal" if is_pty else "")
 
 
 def with_use(port: PortInfo) -> PortInfo:
@@ -123,6 +129,8 @@ def pick_port(port: str, listing: Listing = list_ports) -> str:
     DeviceError
         If no port or more than one is meant; those that come into question are listed.
     """
+    if "\0" in port:
+        raise DeviceError(f"{port!r} is no name of a port: it has a NUL character")
     if port == "auto":
         return _only(port, tuple(p for p in listing() if p.candidate), listing)
     if port.startswith("usb:"):
@@ -130,7 +138,7 @@ def pick_port(port: str, listing: Listing = list_ports) -> str:
         return _only(port, tuple(p for p in listing() if _is(p, wanted)), listing)
     if "://" not in port and any(mark in port for mark in "*?["):
         found = sorted(glob(port))  # noqa: PTH207
-        names = {str(Path(name).resolve()): name for name in found}
+        names = {os.path.realpath(name): name for name in found}
         return _only(port, tuple(PortInfo(device=name) for name in names.values()), listing)
     return port
 
@@ -188,8 +196,7 @@ class PortFinder:
         return self.device
 
     def _info_of(self, device: str) -> PortInfo | None:
-        real = Path(device).resolve()
-        return next((p for p in self._listing() if Path(p.device).resolve() == real), None)
+        return next((p for p in self._listing() if _is_one(p.device, device)), None)
 
     def _again(self, known: PortInfo) -> str:
         here = self._info_of(self.device)

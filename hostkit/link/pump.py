@@ -24,8 +24,8 @@ class Pump:
     """Reads a port in a thread of its own into a bounded queue.
 
     The queue holds 8 MiB. When it is full the newest bytes are dropped and counted in
-    `overrun_bytes`; those that are in it stay in order. What comes is handed over in batches, at
-    most one in 20 ms.
+    `overrun_bytes`; those that are in it stay in order. While less than 2 KiB comes at once, it is
+    handed over at most every 20 ms.
 
     Attributes
     ----------

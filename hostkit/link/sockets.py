@@ -12,6 +12,8 @@ CONNECT_TIMEOUT_S = 5.0
 READ_BYTES = 65536
 MOST_BYTES = 1 << 18
 """What one read takes at most, so that a flood of datagrams cannot hold it."""
+UNREACHABLE = (OSError, ValueError)
+"""A host name that cannot be one, such as ``a..b``, is a ValueError."""
 RECEIVE_BUFFER_BYTES = 1 << 20
 KEEPALIVE_S = 5
 """A TCP peer that vanished without a word is noticed after about three times as long."""
@@ -98,7 +100,7 @@ def connect(address: str, timeout_s: float = CONNECT_TIMEOUT_S) -> SocketTranspo
     place = _address(address)
     try:
         connection = socket.create_connection(place, timeout=timeout_s)
-    except OSError as error:
+    except UNREACHABLE as error:
         raise DeviceError(f"tcp:{address} cannot be reached: {error}") from error
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     _keep_alive(connection)
@@ -128,7 +130,7 @@ def listen(address: str) -> SocketTransport:
     try:
         family, _, _, _, found = socket.getaddrinfo(*place, type=socket.SOCK_DGRAM)[0]
         listener = socket.socket(family, socket.SOCK_DGRAM)
-    except OSError as error:
+    except UNREACHABLE as error:
         raise DeviceError(f"udp:{address} cannot be listened on: {error}") from error
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
@@ -141,7 +143,7 @@ def listen(address: str) -> SocketTransport:
 
 def _address(text: str) -> tuple[str, int]:
     host, _, number = text.rpartition(":")
-    if not host or not number.isdecimal() or not 0 < int(number) < 65536:
+    if not host or not (number.isascii() and number.isdigit()) or not 0 < int(number) < 65536:
         raise DeviceError(f"{text!r} is not HOST:PORT with a port from 1 to 65535")
     if host.startswith("[") and host.endswith("]"):
         host = host[1:-1]

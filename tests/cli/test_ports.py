@@ -121,6 +121,7 @@ def test_port_in_use_is_named_and_not_opened(cable: Cable, hostkit) -> None:
     code, out, _ = hostkit("ports", str(cable.path), "--probe")
     os.close(descriptor)
     assert code == 0
+    assert "pseudo-terminal; in use by" in out.splitlines()[0]
     assert f"({os.getpid()})" in out.splitlines()[0]
     assert "not opened: in use by" in out.splitlines()[1]
 

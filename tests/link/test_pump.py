@@ -168,3 +168,18 @@ def test_close_ends_the_thread_quickly_and_calls_what_was_asked() -> None:
     assert (called, pump._thread.is_alive(), pump.state) == ([True], False, "ended")
     assert pump.read(1.0) is None
     pump.close()
+
+
+def test_small_pieces_wait_for_each_other() -> None:
+    port, begin_s = FakeTransport(*numbered(20, 100)), time.monotonic()
+    pump = pump_of(port)
+    wait_until(lambda: not port.chunks)
+    assert time.monotonic() - begin_s >= 19 * 0.02
+    pump.close()
+
+
+def test_large_pieces_wait_for_nothing() -> None:
+    port = FakeTransport(*numbered(20, 4000))
+    pump = pump_of(port, batch_s=1000.0)
+    wait_until(lambda: not port.chunks)
+    pump.close()

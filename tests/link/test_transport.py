@@ -93,7 +93,10 @@ def test_second_opening_is_refused_and_possible_after_release(cable: Cable) -> N
 
 
 def test_first_opening_of_what_is_not_there_is_an_error(tmp_path: Path) -> None:
-    for port in (str(tmp_path / "ttyNONE"), "tcp:127.0.0.1:1", "udp:256.0.0.1:1", "tcp:x"):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    names = (str(tmp_path / "ttyNONE"), str(tmp_path / "loop"), "/dev/\0", "auto\0")
+    addresses = ("127.0.0.1:1", "256.0.0.1:1", "x", "a..b:1", f"{'x' * 99}:1", "h:٣", "h:0", ":1")
+    for port in (*names, *(f"tcp:{a}" for a in addresses), *(f"udp:{a}" for a in addresses[1:])):
         with pytest.raises(DeviceError):
             open_link(port, 500_000)
 
@@ -137,8 +140,12 @@ def test_port_that_hangs_up_while_it_is_opened_is_an_error(cable: Cable, monkeyp
 
 def test_rate_of_an_open_port_can_be_changed(cable: Cable) -> None:
     port = SerialTransport(str(cable.path), 115_200)
+    cable.send(b"at the old rate")
+    wait_until(lambda: port._port.in_waiting == 15)
     assert port.set_baud(57_600)
     assert port.baud == 57_600
+    cable.send(b"new")
+    assert read_until(port, lambda got: len(got) >= 3) == b"new"
     cable.unplug(keep_name=True)
     assert not port.set_baud(115_200)
     port.close()
@@ -319,9 +326,10 @@ def test_rate_that_is_not_given_is_found_out(cable: Cable, monkeypatch) -> None:
 def test_port_whose_rate_is_not_found_is_closed(cable: Cable, monkeypatch) -> None:
     text = BaudScan(finding="text", baud=9600, sample="hello")
     monkeypatch.setattr(transport, "scan_baud", lambda port, clock: text)
-    with pytest.raises(DeviceError, match="gives text at 9600 bit/s, such as 'hello'"):
+    with pytest.raises(DeviceError, match="gives text at 9600 bit/s, such as 'hello'") as caught:
         open_link(str(cable.path), None)
     open_transport(str(cable.path), 500_000).close()
+    assert caught.tb  # keeps what was opened from being collected, and closed so
 
 
 def serve_rfc2217(
