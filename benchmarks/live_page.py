@@ -64,7 +64,7 @@ def _figures(browser: "Browser", device: LiveDevice, rate_hz: float) -> tuple[st
     command = hostkit("monitor", str(device.design_file), "--port", device.port)
     with running([*command, "--web", "--no-browser"], stderr=subprocess.PIPE) as child:
         page = browser.new_page(viewport={"width": 1280, "height": 800})
-        page.goto(_address(child))
+        page.goto(address_of(child))
         page.wait_for_timeout(SETTLED_MS)
         return _watched(page, child.pid, rate_hz)
 
@@ -93,7 +93,7 @@ def _watched(page: "Page", pid: int, rate_hz: float) -> tuple[str, ...]:
     )
 
 
-def _address(child: subprocess.Popen[bytes]) -> str:
+def address_of(child: subprocess.Popen[bytes]) -> str:
     assert child.stderr is not None
     for line in child.stderr:
         if found := re.search(rb"http://\S+", line):

@@ -88,8 +88,9 @@ def wanted_seconds(text: str) -> float:
 def sustained(device: LiveDevice, duration_s: float) -> Table:
     """Hold the monitor against pymavlink's own loop, one after the other on the same device."""
     say(f"monitor: receives for {duration_s:g} s, then its peer for {min(duration_s, PEER_S):g} s")
-    rows = [_monitor(device, duration_s, "--passive"), _monitor(device, min(duration_s, PEER_S))]
-    peer = _peer(device, min(duration_s, PEER_S))
+    short_s = min(duration_s, PEER_S)
+    rows = [_monitor(device, duration_s), _monitor(device, short_s, "--passive")]
+    peer = _peer(device, short_s)
     return Table(
         title=f"Monitor: {' + '.join(MESSAGES)}, each at {RATE_HZ:g} Hz, {duration_s:g} s",
         columns=(
