@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 PARALLEL := -n auto --dist worksteal
-NODE   := hostkit/emulation/avr8js hostkit/emulation/rp2040js
+NODE   := hostkit/emulation/avr8js hostkit/emulation/rp2040js hostkit/web/page
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test check goldens bench clean

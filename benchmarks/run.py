@@ -18,6 +18,7 @@ BENCHES = (
     "fpga",
     "large",
     "decode",
+    "monitor",
 )
 """Modules of this folder; each has a function `tables`."""
 

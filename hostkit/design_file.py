@@ -2,14 +2,15 @@
 
 The digest is the first 12 hex digits of the SHA-256 of the canonical JSON without its ``digest``
 key. It is always computed from the content, so a design that somebody edited is another design,
-and a device that runs the old one is refused.
+and a device that runs the old one is refused. What a device must keep to pass, ``acceptance``, is
+not part of it: other limits make no other device.
 """
 
 import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from hostkit.records import (
     AXES,
     OBJECTIVES,
     TILT_METHODS,
+    Acceptance,
     FilterDesign,
     Parameter,
     RecordingDigest,
@@ -33,7 +35,7 @@ SIZE_LIMIT_BYTES = 16 * 2**20
 
 
 def to_document(design: FilterDesign) -> dict[str, Any]:
-    """Return a design as plain JSON values, without its digest."""
+    """Return what the digest of a design is taken of, as plain JSON values."""
     return {
         "schema": SCHEMA,
         "filter": design.filter,
@@ -81,6 +83,9 @@ def save_design(design: FilterDesign, path: Path) -> None:
 def design_text(design: FilterDesign) -> str:
     """Return the text of a design file: the canonical content, indented, with its digest."""
     document = {**to_document(design), "digest": digest(design)}
+    if design.acceptance is not None:
+        limits = asdict(design.acceptance)
+        document["acceptance"] = {k: v for k, v in limits.items() if v is not None}
     return json.dumps(document, sort_keys=True, indent=2, allow_nan=False) + "\n"
 
 
@@ -107,6 +112,16 @@ def load_design(path: Path) -> FilterDesign:
         raise DesignError(f"{path}: {error}") from error
 
 
+def with_acceptance_of(design: FilterDesign, path: Path) -> FilterDesign:
+    """Return a design with the limits of the one that a file has now, if there is one."""
+    if not path.is_file():
+        return design
+    try:
+        return replace(design, acceptance=load_design(path).acceptance)
+    except DesignError:
+        return design
+
+
 def edited_by_hand(path: Path) -> bool:
     """Tell whether the digest written in a design file is not that of its content."""
     written = json.loads(path.read_text(encoding="utf-8")).get("digest")
@@ -128,7 +143,7 @@ def from_document(document: object) -> FilterDesign:
     top = _Reader(document, "design")
     if top.text("schema") != SCHEMA:
         raise DesignError(f"schema is {top.text('schema')!r}; this hostkit reads {SCHEMA!r}")
-    top.only("schema digest filter axes tilt mounting rate_hz sensor parameters tuning")
+    top.only("schema digest filter axes tilt mounting rate_hz sensor parameters tuning acceptance")
     sensor = top.inner("sensor")
     sensor.only("part gyro_full_scale_deg_s accel_full_scale_g low_pass_setting")
     return FilterDesign(
@@ -145,7 +160,14 @@ def from_document(document: object) -> FilterDesign:
         ),
         parameters=_parameters(top.inner("parameters")),
         tuning=None if top.value("tuning") is None else _tuning(top.inner("tuning")),
+        acceptance=_acceptance(top.inner("acceptance")) if top.has("acceptance") else None,
     )
+
+
+def _acceptance(reader: "_Reader") -> Acceptance:
+    names = tuple(item.name for item in fields(Acceptance))
+    reader.only(" ".join(names))
+    return Acceptance(**{name: reader.optional_number(name) for name in names})
 
 
 def _parameters(reader: "_Reader") -> tuple[Parameter, ...]:
@@ -197,6 +219,9 @@ class _Reader:
 
     def keys(self) -> tuple[str, ...]:
         return tuple(self._items)
+
+    def has(self, key: str) -> bool:
+        return key in self._items
 
     def only(self, names: str) -> None:
         """Refuse keys outside `names`, a list separated by spaces."""

@@ -1,6 +1,7 @@
 """The frozen records that flow from stage to stage."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, fields
 from typing import Final, Literal
 
 import numpy as np
@@ -80,8 +81,48 @@ class TuningRecord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Acceptance:
+    """What a device of a design must keep to pass; None where the design says nothing.
+
+    Attributes
+    ----------
+    max_rms_deg, max_abs_deg, max_p99_deg
+        RMS, largest and 99th percentile of the residual device minus float model.
+    max_lost_share
+        Share of samples that may be lost, 0 to 1.
+    max_lag_ms
+        How far the device may be behind the float model or before it.
+    max_drift_deg_min
+        Largest slope of the residual, deg per minute.
+    """
+
+    max_rms_deg: float | None = None
+    max_abs_deg: float | None = None
+    max_p99_deg: float | None = None
+    max_lost_share: float | None = None
+    max_lag_ms: float | None = None
+    max_drift_deg_min: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a limit that nothing can exceed, or everything does."""
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is not None and not (math.isfinite(value) and value >= 0.0):
+                raise DesignError(
+                    f"acceptance: {item.name} = {value}; it must be a finite number, 0 or more"
+                )
+        if self.max_lost_share is not None and self.max_lost_share > 1.0:
+            raise DesignError(
+                f"acceptance: max_lost_share = {self.max_lost_share}; it must be at most 1"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FilterDesign:
-    """A tuned filter: all that code is rendered from."""
+    """A tuned filter: all that code is rendered from.
+
+    `acceptance` is no part of what a device runs, nor of the digest that names it.
+    """
 
     filter: str
     axes: AxisChoice
@@ -91,6 +132,7 @@ class FilterDesign:
     sensor: SensorConfig
     parameters: tuple[Parameter, ...]
     tuning: TuningRecord | None = None
+    acceptance: Acceptance | None = None
 
     def __post_init__(self) -> None:
         """Refuse a rate that no sensor has."""
@@ -143,6 +185,9 @@ class AngleTrace:
         half turns, then the hidden words.
     restarted
         True where the filter loaded the measured tilt instead of stepping, shape ``(N,)``.
+    retuned
+        True where the device says that a parameter in use is not the design's, shape ``(N,)``;
+        None where nothing says so.
     """
 
     sequence: NDArray[np.int64]
@@ -151,6 +196,7 @@ class AngleTrace:
     gyro_count: NDArray[np.int64]
     state_raw: NDArray[np.int64]
     restarted: NDArray[np.bool_]
+    retuned: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -158,6 +204,8 @@ class AngleTrace:
             read_only(array)
         read_only(self.state_raw)
         read_only(self.restarted)
+        if self.retuned is not None:
+            read_only(self.retuned)
 
     def __len__(self) -> int:
         return len(self.sequence)
@@ -216,6 +264,13 @@ class ValidationReport:
     unjudged
         Samples that no model could follow: every so many-th only is sent, or the parameters in
         use were not known.
+    stride
+        Greatest step of the sample counter that the device kept to on purpose; 1 where it sends
+        every sample.
+    tolerance_rad
+        That tolerance; None for a filter in integers.
+    untold
+        Parameters in use that are not the design's and whose value the device has not told.
     rms_rad, max_rad
         Residual device minus float model, over all axes.
     residual
@@ -237,6 +292,9 @@ class ValidationReport:
     late: int = 0
     repeated: int = 0
     unjudged: int = 0
+    stride: int = 1
+    tolerance_rad: float | None = None
+    untold: tuple[str, ...] = field(default=())
     residual: tuple[ResidualStatistics, ...] = field(default=())
     retuned: tuple[RetunedParameter, ...] = field(default=())
     reasons: tuple[str, ...] = field(default=())

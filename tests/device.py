@@ -5,9 +5,16 @@ import numpy as np
 from hostkit.design_file import digest
 from hostkit.dialect import python_module
 from hostkit.filters import FILTERS
+from hostkit.filters.complementary import RUN_TIME, with_told
 from hostkit.records import AXES, FilterDesign
+from hostkit.validation import device_parameters
+from hostkit.validation.retuning import link_name
 
 COLUMN = {"roll": 0, "pitch": 1}
+
+
+def in_order_of_device(told: dict[str, float]) -> tuple[float, ...]:
+    return tuple(told.get(link_name(item), 0.0) for item in RUN_TIME)
 
 
 class Device:
@@ -46,22 +53,57 @@ class Device:
         states = self.states(samples) if states is None else states
         messages = [m.MAVLink_heartbeat_message(0, 0, 0, 0, 4, 3)]
         for k in range(samples):
-            messages.append(
-                m.MAVLink_tilt_sample_message(
-                    k * 10_000,
-                    k,
-                    int(states[k, 0]),
-                    int(states[k, 1]),
-                    accel[k].tolist(),
-                    gyro[k].tolist(),
-                    0,
-                    0,
-                    list(bytes.fromhex(self.digest)),
-                    int(k == 0) | flags,
-                    states[k, 2:].tolist(),
-                )
-            )
+            flags_k = int(k == 0) | flags
+            messages.append(self._sample(k, states[k], accel[k], gyro[k], flags_k))
         return [self._pack(message) for message in messages]
+
+    def retuned_frames(self, samples: int, changes: dict[int, dict[str, float]]) -> list[bytes]:
+        """Samples, and before some of them the parameters that are in use from there on."""
+        told = {p.name: p.design_value for p in device_parameters(self.design)}
+        own, used = dict(told), self.design
+        filter_, axes = FILTERS[self.design.filter], len(AXES[self.design.axes])
+        accel, gyro = self.counts(samples)
+        frames, state = [], None
+        for k in range(samples):
+            restarts = k == 0
+            for name, value in changes.get(k, {}).items():
+                restarts |= "BIAS" in name and filter_.lower(self.design).integral is not None
+                told[name] = float(np.float32(value))
+                frames.append(self.told(name, told[name]))
+            if k in changes:
+                used = with_told(self.design, in_order_of_device(told))
+            spec, one = filter_.lower(used), slice(k, k + 1)
+            if restarts:
+                state = filter_.run_integer(spec, accel[one], gyro[one])
+            else:
+                state = filter_.step_integer(spec, state, accel[one], gyro[one])
+            words = np.zeros(4, dtype=np.int64)
+            for i, axis in enumerate(AXES[self.design.axes]):
+                words[COLUMN[axis]] = state[0, i]
+            words[2 : 2 + state.shape[1] - axes] = state[0, axes:]
+            flags = int(restarts) | (4 if told != own else 0)
+            frames.append(self._pack(self._sample(k, words, accel[k], gyro[k], flags)))
+        return frames
+
+    def told(self, name: str, value: float) -> bytes:
+        """A PARAM_VALUE."""
+        m = self.module
+        return self._pack(m.MAVLink_param_value_message(name.encode(), value, 9, 7, 0))
+
+    def _sample(self, k, state, accel, gyro, flags):
+        return self.module.MAVLink_tilt_sample_message(
+            k * 10_000,
+            k,
+            int(state[0]),
+            int(state[1]),
+            accel.tolist(),
+            gyro.tolist(),
+            0,
+            0,
+            list(bytes.fromhex(self.digest)),
+            flags,
+            state[2:].tolist(),
+        )
 
     def _pack(self, message) -> bytes:
         frame = bytes(message.pack(self.mav))

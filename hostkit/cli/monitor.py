@@ -3,150 +3,106 @@
 import contextlib
 import math
 import sys
-import time
 from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import DESIGN, JSON, finite, read_design, say
+from hostkit.cli.inputs import DESIGN, JSON, read_design, say
+from hostkit.cli.monitor_options import MonitorChoice, chosen_monitor, monitor_options
+from hostkit.cli.monitor_setup import open_outlets, open_port, open_recorders, serve_page
 from hostkit.cli.output import emit_json
-from hostkit.errors import VerdictError
-from hostkit.link.tlog import TlogWriter
-from hostkit.link.transport import open_transport
-from hostkit.monitor import Session, SessionResult
-from hostkit.targets.atmega328p import ATMEGA328P
-from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thresholds
-
-PROGRESS_EVERY_S = 1.0
+from hostkit.cli.stopping import stoppable
+from hostkit.cli.terminal import view_for
+from hostkit.emulation.comparison import FLOAT_TOLERANCE_RAD
+from hostkit.errors import HostkitError, VerdictError
+from hostkit.files import write_aside
+from hostkit.monitor import Session, SessionOptions, SessionResult
+from hostkit.monitor.document import monitor_document
+from hostkit.records import FilterDesign
 
 
 @click.command("monitor")
 @DESIGN
-@click.option(
-    "--port",
-    required=True,
-    metavar="P",
-    help="/dev/ttyUSB0, COM3, a pty, tcp:HOST:PORT, udp:HOST:PORT or file:FLIGHT.tlog.",
-)
-@click.option(
-    "--duration",
-    "duration_s",
-    type=click.FloatRange(min=0.0, min_open=True),
-    callback=finite,
-    metavar="S",
-    help="Seconds to look at the device; without it until Ctrl-C or the end of a file.",
-)
-@click.option(
-    "--baud",
-    type=click.IntRange(300, 12_000_000),
-    default=ATMEGA328P.baud,
-    show_default=True,
-    help="Bit rate of a serial port.",
-)
-@click.option(
-    "--max-rms-deg",
-    type=click.FloatRange(min=0.0),
-    callback=finite,
-    default=DEFAULT_MAX_RMS_DEG,
-    show_default=True,
-    metavar="X",
-    help="Largest residual against the float model that passes.",
-)
-@click.option(
-    "--max-lost-percent",
-    type=click.FloatRange(0.0, 100.0),
-    callback=finite,
-    default=100.0 * DEFAULT_MAX_LOST_SHARE,
-    show_default=True,
-    metavar="X",
-    help="Largest share of lost samples that passes.",
-)
-@click.option(
-    "--record",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="F",
-    help="Keep everything that is received in a tlog.",
-)
+@monitor_options
 @JSON
-def monitor(
-    design_file: Path,
-    port: str,
-    duration_s: float | None,
-    baud: int,
-    max_rms_deg: float,
-    max_lost_percent: float,
-    record: Path | None,
-    as_json: bool,
-) -> None:
+def monitor(design_file: Path, as_json: bool) -> None:
     """Validate the device at a port against DESIGN and give a verdict.
 
     Every step is computed again from the raw counts with the integer model, which must agree bit
     for bit, and with the float model. A device that runs another design is refused.
 
+    A device that goes away is waited for and judged on when it is back. Ctrl-C and SIGTERM end the
+    session with its verdict.
+
     \b
     Example:
       hostkit monitor design.json --port /dev/ttyUSB0 --duration 30
+      hostkit monitor design.json --web --record flight.tlog --record flight.csv
+      hostkit monitor design.json --port file:flight.tlog --web --speed 4
+      hostkit monitor design.json --forward udp:127.0.0.1:14550 --json-udp 127.0.0.1:9870
     """
+    choice = chosen_monitor()
     design = read_design(design_file)
-    with contextlib.ExitStack() as stack:
-        transport = open_transport(port, baud)
-        stack.callback(transport.close)
-        recorder = None
-        if record is not None:
-            recorder = TlogWriter(record)
-            stack.callback(recorder.close)
-        session = Session(
-            design=design,
-            transport=transport,
-            thresholds=Thresholds(max_rms_deg=max_rms_deg, max_lost_share=max_lost_percent / 100.0),
-            duration_s=duration_s,
-            recorder=recorder,
-            progress=_Progress(),
-        )
-        result = session.run()
+    result, problems = _watch(design, choice, interactive=not as_json)
+    _write_reports(result, choice)
     if as_json:
         emit_json(monitor_document(result))
     else:
         _show(result)
     if result.report.verdict != "pass":
         raise VerdictError(f"verdict {result.report.verdict}: " + "; ".join(result.report.reasons))
+    if problems:
+        raise HostkitError("; ".join(problems))
 
 
-class _Progress:
-    """Says once a second how it goes, on a terminal only."""
+def _watch(
+    design: FilterDesign, choice: MonitorChoice, *, interactive: bool
+) -> tuple[SessionResult, tuple[str, ...]]:
+    """Run the session; return its result and why recordings ended early."""
+    signing = choice.signing()
+    with contextlib.ExitStack() as stack:
+        transport = open_port(choice)
+        stack.callback(transport.close)
+        session = Session(
+            design=design,
+            transport=transport,
+            thresholds=choice.thresholds(design),
+            duration_s=choice.duration_s,
+            recorders=open_recorders(choice.records, design, choice.system, stack),
+            outlets=open_outlets(choice, design, stack),
+            options=SessionOptions(
+                port=choice.port,
+                system=choice.system,
+                tolerance_rad=FLOAT_TOLERANCE_RAD if choice.in_float else None,
+                as_designed=choice.as_designed,
+                passive=choice.passive,
+                patient=not choice.no_reconnect,
+                stays=choice.web and choice.duration_s is None,
+                folder=Path.cwd(),
+                signing=signing,
+            ),
+        )
+        if choice.web:
+            serve_page(session, choice, stack)
+        view = view_for(sys.stderr, session.controls.info(), interactive=interactive)
+        session.views.append(stack.enter_context(view))
+        wish = stack.enter_context(stoppable(session.stop))
+        result = session.run()
+    if wish.given and not result.report.samples and not choice.web:
+        raise KeyboardInterrupt
+    return result, session.problems
 
-    def __init__(self) -> None:
-        self._next = 0.0
 
-    def __call__(self, session: Session) -> None:
-        now = time.monotonic()
-        if now < self._next or not sys.stderr.isatty():
-            return
-        self._next = now + PROGRESS_EVERY_S
-        judge = session.validator
-        say(f"{judge.samples} samples, {judge.lost} lost, {judge.mismatches} mismatches")
+def _write_reports(result: SessionResult, choice: MonitorChoice) -> None:
+    if choice.report is not None:
+        from hostkit.report.monitor import write_monitor_report
 
+        write_monitor_report(result, choice.report)
+        say(f"report: {choice.report}")
+    if choice.junit is not None:
+        from hostkit.report.junit import junit_xml
 
-def monitor_document(result: SessionResult) -> dict[str, object]:
-    """Return the result of a session as the document ``hostkit.monitor/1``."""
-    report, link = result.report, result.link
-    return {
-        "schema": "hostkit.monitor/1",
-        "samples": report.samples,
-        "checked": report.checked,
-        "lost": report.lost,
-        "lost_frames": link.lost_frames,
-        "bad": link.bad,
-        "bad_bytes": link.bad_bytes,
-        "unknown": link.unknown,
-        "rms_deg": None if report.rms_rad is None else math.degrees(report.rms_rad),
-        "max_deg": None if report.max_rad is None else math.degrees(report.max_rad),
-        "mismatches": report.mismatches,
-        "digest_ok": report.digest_ok,
-        "duration_s": result.duration_s,
-        "verdict": report.verdict,
-        "reasons": list(report.reasons),
-    }
+        write_aside(choice.junit, junit_xml(result))
 
 
 def _show(result: SessionResult) -> None:

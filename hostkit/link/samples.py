@@ -58,6 +58,7 @@ def trace_of(
         gyro_count=read["gyro"].astype(np.int64),
         state_raw=states.astype(np.int64),
         restarted=(read["flags"] & python_module().HOSTKIT_SAMPLE_RESTARTED) != 0,
+        retuned=(read["flags"] & python_module().HOSTKIT_SAMPLE_RETUNED) != 0,
     )
 
 

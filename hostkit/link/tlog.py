@@ -1,14 +1,15 @@
 """The tlog format: before each frame, eight bytes of big-endian microseconds since 1970."""
 
-import contextlib
 import os
 import re
 import struct
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
-from hostkit.errors import DeviceError, HostkitError
+from hostkit.errors import DeviceError
+from hostkit.link.decoder import Frame
+from hostkit.link.part_file import PartFile, PartialWriteError, Write
 
 STAMP = struct.Struct(">Q")
 MAGIC_V2 = 0xFD
@@ -38,23 +39,35 @@ def read_tlog(path: Path) -> Generator[bytes, None, None]:
 
 def _frames(file: BinaryIO, path: Path) -> Generator[bytes, None, None]:
     with file:
-        window, begin = file.read(CHUNK_BYTES), 0
-        if _MAGIC.match(window, STAMP.size) is None:
-            raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
-        while True:
-            if len(window) - begin < STAMP.size + LONGEST_FRAME_BYTES:
-                window, begin = window[begin:] + file.read(CHUNK_BYTES), 0
-            if len(window) - begin <= STAMP.size:
-                return
-            frame = _frame_at(window, begin + STAMP.size)
-            if frame is not None:
-                yield frame
-                begin += STAMP.size + len(frame)
-            else:
-                begin = _next_stamp(window, begin)
+        for _, frame in stamped_frames(file, path):
+            yield frame
 
 
-def _frame_at(window: bytes, begin: int) -> bytes | None:
+def stamped_frames(file: BinaryIO, path: Path) -> Generator[tuple[int, bytes], None, None]:
+    """Yield time stamps, us since 1970, and frames, from where a file stands.
+
+    Raises
+    ------
+    DeviceError
+        If no frame follows the first time stamp.
+    """
+    window, begin = file.read(CHUNK_BYTES), 0
+    if _MAGIC.match(window, STAMP.size) is None:
+        raise DeviceError(f"{path} is not a tlog: no MAVLink frame follows its first 8 bytes")
+    while True:
+        if len(window) - begin < STAMP.size + LONGEST_FRAME_BYTES:
+            window, begin = window[begin:] + file.read(CHUNK_BYTES), 0
+        if len(window) - begin <= STAMP.size:
+            return
+        frame = frame_at(window, begin + STAMP.size)
+        if frame is not None:
+            yield STAMP.unpack_from(window, begin)[0], frame
+            begin += STAMP.size + len(frame)
+        else:
+            begin = _next_stamp(window, begin)
+
+
+def frame_at(window: bytes, begin: int) -> bytes | None:
     """Return the frame that begins there, or None if there is no whole one."""
     head = window[begin : begin + 3]
     if len(head) < 3 or head[0] not in (MAGIC_V1, MAGIC_V2):
@@ -78,36 +91,49 @@ class TlogWriter:
 
     Until :meth:`close` it is called ``NAME.part``, and every frame written so far is in it.
 
+    Attributes
+    ----------
+    name
+        Name of the file, without its folder.
+    frames, written_bytes
+        What is in it.
+    left
+        Where an unfinished recording of that name was moved; None if there was none.
+
     Raises
     ------
     HostkitError
         If the file cannot be written.
     """
 
-    def __init__(self, path: Path) -> None:
-        if path.exists() and not path.is_file():
-            raise HostkitError(f"{path} is no file; a recording goes to a file of its own")
-        self._path = path
-        self._part = path.with_name(path.name + ".part")
-        try:
-            self._file = self._part.open("wb", buffering=0)
-        except OSError as error:
-            raise HostkitError(f"{self._part} cannot be written: {error.strerror}") from error
+    def __init__(self, path: Path, *, write: Write = os.write) -> None:
+        self._file = PartFile(path, kind=".tlog", write=write)
+        self.name: str = path.name
+        self.left = self._file.left
+        self.frames = 0
+
+    @property
+    def written_bytes(self) -> int:
+        """Bytes in the file."""
+        return self._file.written_bytes
+
+    def add(self, time_us: int, frames: Sequence[Frame]) -> None:
+        """Append frames that were received at `time_us` microseconds since 1970."""
+        self._append(time_us, [frame.raw for frame in frames])
 
     def write(self, time_us: int, frame: bytes) -> None:
-        """Append one frame, received at `time_us` microseconds since 1970."""
+        """Append one frame."""
+        self._append(time_us, [frame])
+
+    def _append(self, time_us: int, frames: list[bytes]) -> None:
+        stamp = STAMP.pack(time_us)
         try:
-            self._file.write(STAMP.pack(time_us) + frame)
-        except OSError as error:
-            raise HostkitError(f"{self._part} cannot be written: {error.strerror}") from error
+            self._file.append([stamp + frame for frame in frames])
+        except PartialWriteError as error:
+            self.frames += error.kept
+            raise
+        self.frames += len(frames)
 
     def close(self) -> None:
         """Finish the file and give it its name."""
-        try:
-            os.fsync(self._file.fileno())
-            self._file.close()
-            self._part.replace(self._path)
-        except OSError as error:
-            with contextlib.suppress(OSError):
-                self._file.close()
-            raise HostkitError(f"{self._path} cannot be written: {error.strerror}") from error
+        self._file.close()

@@ -1,5 +1,7 @@
 """The monitor: a live session with a verdict."""
 
-from hostkit.monitor.session import Session, SessionResult
+from hostkit.monitor.parts import SessionOptions
+from hostkit.monitor.result import SessionResult
+from hostkit.monitor.session import Session
 
-__all__ = ["Session", "SessionResult"]
+__all__ = ["Session", "SessionOptions", "SessionResult"]

@@ -1,76 +1,56 @@
-"""A live session: bytes from a port, through the decoder, into the validator, to a verdict."""
+"""A session: bytes from a port through decoder and models to views, recordings and a verdict."""
 
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import Protocol
+from functools import partial
+from pathlib import Path
 
-from hostkit.design_file import digest
 from hostkit.errors import DeviceError
-from hostkit.link.decoder import Decoder, Frame, Source, digest_of, is_retuned, trace_of
-from hostkit.link.statistics import LinkStatistics
+from hostkit.link.clock import Clock, SystemClock
+from hostkit.link.decoder import Decoder, Frame
+from hostkit.link.encoder import Encoder
+from hostkit.link.timesync import TimeSync
 from hostkit.link.transport import Transport
-from hostkit.records import AXES, FilterDesign, ValidationReport
+from hostkit.monitor.collect import JitterCollector, OverlayCollector
+from hostkit.monitor.controls import SessionControls
+from hostkit.monitor.conversation import Conversation
+from hostkit.monitor.inbox import Inbox
+from hostkit.monitor.judge import Judge, Stretch
+from hostkit.monitor.notices import Notices
+from hostkit.monitor.outlets import Outlets
+from hostkit.monitor.parts import Parts, SessionOptions, session_info
+from hostkit.monitor.receiver import Received, Receiver
+from hostkit.monitor.recordings import Recorder, Recordings
+from hostkit.monitor.requests import SessionRequests
+from hostkit.monitor.result import SessionResult
+from hostkit.monitor.sample_files import open_recorder
+from hostkit.monitor.silence import SilenceWatch
+from hostkit.monitor.snapshot import Controls, SessionInfo, Snapshot, View
+from hostkit.records import FilterDesign
 from hostkit.validation import Thresholds, Validator
 
 POLL_S = 0.1
-SILENCE_S = 5.0
-"""How long a live port may stay without a sample before the session gives up."""
-
-TEXT_SHARE = 0.9
-"""Share of printable bytes from which on noise is taken for text."""
-
-
-class Clock(Protocol):
-    """A source of time."""
-
-    def monotonic(self) -> float:
-        """Return seconds that only rise."""
-
-    def time(self) -> float:
-        """Return seconds since 1970."""
-
-
-class SystemClock:
-    """The clock of the machine."""
-
-    def monotonic(self) -> float:
-        """Return seconds that only rise."""
-        return time.monotonic()
-
-    def time(self) -> float:
-        """Return seconds since 1970."""
-        return time.time()
-
-
-class Recorder(Protocol):
-    """Takes every frame that was received."""
-
-    def write(self, time_us: int, frame: bytes) -> None:
-        """Keep one frame."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionResult:
-    """The verdict of a session, and what the link did meanwhile."""
-
-    report: ValidationReport
-    link: LinkStatistics
-    duration_s: float
+SNAPSHOT_EVERY_S = 0.25
+RESULT_WAIT_S = 5.0
 
 
 @dataclass(slots=True, kw_only=True)
 class Session:
-    """One device under validation.
+    """One device under validation; runs in the thread of the caller.
 
     Attributes
     ----------
     duration_s
         How long to look at samples, counted from the first; None until the stream ends.
-    recorder
-        Where every good frame goes.
-    progress
-        Called after each batch of samples with the session.
+    recorder, recorders
+        Where every good frame goes; they are closed when the session ends.
+    views
+        What is shown samples as they come, and the state four times a second.
+    outlets
+        Where frames and samples go besides; closed by whoever opened them.
+    controls
+        What other threads may ask of it.
     """
 
     design: FilterDesign
@@ -78,19 +58,114 @@ class Session:
     thresholds: Thresholds
     duration_s: float | None = None
     recorder: Recorder | None = None
+    recorders: Sequence[Recorder] = ()
     clock: Clock = field(default_factory=SystemClock)
-    progress: Callable[["Session"], None] = lambda session: None
-    decoder: Decoder = field(default_factory=Decoder)
+    options: SessionOptions = field(default_factory=SessionOptions)
+    views: list[View] = field(default_factory=list)
+    outlets: Outlets = field(default_factory=Outlets)
+    controls: Controls = field(init=False)
     validator: Validator = field(init=False)
-    _source: Source | None = None
-    _other_digest: str | None = None
-    _retuned: bool = False
-    _heard: bytes = b""
-    _status_text: str = ""
+    _parts: Parts = field(init=False)
+    _silence: SilenceWatch = field(init=False)
+    _overlay: OverlayCollector = field(init=False)
+    _jitter: JitterCollector = field(init=False)
+    _info: SessionInfo = field(init=False)
+    _latest: Snapshot = field(init=False)
+    _inbox: Inbox = field(default_factory=Inbox)
+    _stopped: bool = False
+    _stream_ended: bool = False
+    _refusal_told: bool = False
+    _begun_s: float = 0.0
+    _next_snapshot_s: float = 0.0
+    _final: SessionResult | None = None
 
     def __post_init__(self) -> None:
-        """Lower the design."""
-        self.validator = Validator(self.design)
+        """Put the parts together."""
+        self._parts = self._put_together()
+        parts = self._parts
+        self._silence = SilenceWatch(
+            self.transport,
+            parts.receiver,
+            parts.watches,
+            parts.notices,
+            self.clock,
+            patient=self.options.patient,
+        )
+        self._collect_anew()
+        self._info = session_info(self.design, self.transport, self.options.port)
+        self._begun_s = self.clock.monotonic()
+        self._latest = parts.snapshot(elapsed_s=0.0, ended=False)
+        self.controls = SessionControls(
+            SessionRequests(parts, self._collect_anew),
+            self._inbox,
+            self._info,
+            lambda: self._latest,
+            parts.recordings.check,
+        )
+
+    def _put_together(self) -> Parts:
+        options, clock, transport = self.options, self.clock, self.transport
+        self.validator = Validator(
+            self.design, tolerance_rad=options.tolerance_rad, as_designed=options.as_designed
+        )
+        notices = Notices(clock)
+        own = () if self.recorder is None else (self.recorder,)
+        key = options.signing
+        decoder = Decoder(key if key is None or transport.live else key.for_replay())
+        encoder, silent = Encoder(key), options.passive or not transport.live
+        return Parts(
+            design=self.design,
+            thresholds=self.thresholds,
+            transport=transport,
+            clock=clock,
+            notices=notices,
+            receiver=Receiver(transport, decoder, clock, notices),
+            judge=Judge(
+                self.design,
+                self.validator,
+                notices,
+                system=options.system,
+                as_designed=options.as_designed,
+            ),
+            conversation=Conversation(
+                transport, encoder, clock, notices, self.design, silent=silent
+            ),
+            timesync=TimeSync(self._now_ns),
+            recordings=Recordings(
+                (*own, *self.recorders), notices, folder=options.folder, opener=self._opener
+            ),
+            outlets=self.outlets,
+        )
+
+    @property
+    def _opener(self) -> Callable[[Path], Recorder]:
+        return partial(open_recorder, design=self.design, system=self.options.system)
+
+    def stop(self) -> None:
+        """End the session soon; may be called from any thread and from a signal handler."""
+        self._stopped = True
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Why recordings ended early."""
+        return tuple(self._parts.recordings.problems)
+
+    def ask_result(self) -> SessionResult:
+        """Return the result so far; called from another thread while the session runs.
+
+        Raises
+        ------
+        DeviceError
+            If the session does not answer.
+        """
+        answer: Future[SessionResult] = Future()
+        self._inbox.put(lambda: answer.set_result(self._result()))
+        try:
+            return answer.result(0.0 if self._final is not None else RESULT_WAIT_S)
+        except TimeoutError:
+            if self._final is not None:
+                return self._final
+            raise DeviceError(f"the session did not answer within {RESULT_WAIT_S:g} s") from None
 
     def run(self) -> SessionResult:
         """Look at the device until time is up, the stream ends, or another design is met.
@@ -100,93 +175,166 @@ class Session:
         DeviceError
             If a live port stays without samples for 5 s, or goes away.
         """
-        begun = self.clock.monotonic()
-        last_sample = begun
-        first_sample: float | None = None
+        self._begun_s = self.clock.monotonic()
+        self._silence.begin()
+        self._tell_earlier()
         try:
-            while self._other_digest is None and not self._retuned:
-                data = self.transport.read(POLL_S)
-                now = self.clock.monotonic()
-                if data is None:
-                    self._require_end()
-                    break
-                if self._take(data):
-                    last_sample = now
-                    first_sample = now if first_sample is None else first_sample
-                    self.progress(self)
-                if self._time_is_up(first_sample, now):
-                    break
-                if self.transport.live and now - last_sample > SILENCE_S:
-                    raise DeviceError(self._silence())
+            while not self._is_over():
+                self._turn()
         except KeyboardInterrupt:
-            if first_sample is None:
+            if self._silence.first_s is None:
                 raise
-        ended = self.clock.monotonic()
-        return SessionResult(
-            report=self.validator.report(
-                self.thresholds, other_digest=self._other_digest, retuned=self._retuned
-            ),
-            link=self.decoder.statistics(),
-            duration_s=ended - (begun if first_sample is None else first_sample),
-        )
+        finally:
+            self._parts.recordings.close()
+            self._final = self._result()
+            self._publish(ended=True)
+        return self._final
 
-    def _time_is_up(self, first_sample: float | None, now: float) -> bool:
-        if first_sample is None or self.duration_s is None:
-            return False
-        return now - first_sample >= self.duration_s
+    def _is_over(self) -> bool:
+        if self._stopped:
+            return True
+        first_s = self._silence.first_s
+        if first_s is not None and self.duration_s is not None:
+            time_is_up = self.clock.monotonic() - first_s >= self.duration_s
+        else:
+            time_is_up = False
+        at_end = self._stream_ended or self._parts.judge.refused
+        return time_is_up or (at_end and not self.options.stays)
 
-    def _take(self, data: bytes) -> bool:
-        """Decode and judge some bytes; tell whether a sample was among them."""
-        if self.validator.samples == 0:
-            self._heard = (self._heard + data)[-512:]
-        frames = self.decoder.feed(data)
-        if self.recorder is not None:
-            now_us = int(self.clock.time() * 1e6)
-            for frame in frames:
-                self.recorder.write(now_us, frame.raw)
-        samples = [frame for frame in frames if self._is_ours(frame)]
-        wanted = digest(self.design)
-        for frame in samples:
-            if digest_of(frame) != wanted:
-                self._other_digest = digest_of(frame)
-                return True
-            if is_retuned(frame):
-                self._retuned = True
-                return True
-        hidden_words = len(self.validator.spec.hidden)
-        self.validator.add(trace_of(samples, AXES[self.design.axes], hidden_words=hidden_words))
-        return bool(samples)
+    def _turn(self) -> None:
+        """Look at the port once, and show what came."""
+        self._inbox.serve(POLL_S if self._stream_ended else 0.0)
+        if not self._stream_ended or self.transport.state != "ended":
+            self._stream_ended = False
+            self._take(self._parts.receiver.receive(POLL_S))
+            if self._stream_ended:
+                self._publish()
+        self._speak()
+        if self.clock.monotonic() >= self._next_snapshot_s:
+            self._publish()
 
-    def _is_ours(self, frame: Frame) -> bool:
-        """Tell whether a frame is a sample of the first device that sent one."""
-        if frame.name == "STATUSTEXT":
-            self._status_text = str(frame.message.text)[:50]
-        if frame.name != "TILT_SAMPLE":
-            return False
-        if self._source is None:
-            self._source = frame.source
-        return frame.source == self._source
+    def _take(self, received: Received) -> None:
+        """Give what came to everybody."""
+        parts, received_ns = self._parts, self._now_ns()
+        if received.opened_anew:
+            self._begin_epoch()
+        if received.ended:
+            self._end_of_stream()
+        if received.lost_some:
+            self.validator.doubt_parameters()
+        frames = received.frames
+        parts.recordings.add(int(self.clock.time() * 1e6), frames)
+        parts.outlets.send(frames)
+        for frame in frames:
+            parts.watches.take(frame)
+            if frame.name == "TIMESYNC":
+                parts.timesync.take(frame, received_ns)
+            elif frame.name not in ("TILT_SAMPLE", "ATTITUDE"):
+                parts.conversation.take(frame)
+        heard = self._judge(frames, received_ns)
+        self._silence.look(heard=heard, samples=parts.judge.samples)
 
-    def _require_end(self) -> None:
+    def _judge(self, frames: list[Frame], received_ns: int) -> bool:
+        """Judge and show samples; tell whether there were any."""
+        judge = self._parts.judge
+        before = judge.samples
+        for stretch in judge.take(frames, self.clock.time(), self._position_s):
+            self._show(stretch, received_ns)
+        if judge.source is not None:
+            self._parts.conversation.attend(judge.source)
+            self._parts.timesync.source = judge.source
+        if judge.refused and not self._refusal_told:
+            self._parts.notices.add("error", judge.report(self.thresholds).reasons[0])
+        self._refusal_told = judge.refused
+        return judge.samples > before or judge.refused
+
+    def _show(self, stretch: Stretch, received_ns: int) -> None:
+        if stretch.anew:
+            self._parts.conversation.begin_epoch()
+            self._parts.timesync.begin_epoch()
+            self._jitter.begin_epoch()
+        if self._parts.judge.epoch != self._latest.epoch:
+            self._publish()
+        self._parts.timesync.arrived(stretch.time_us, received_ns)
+        self._jitter.arrived(int(stretch.time_us[-1]), received_ns)
+        self._overlay.add(stretch.batch)
+        self._parts.outlets.take_batch(stretch.batch)
+        for view in self.views:
+            view.take_batch(stretch.batch)
+
+    def _begin_epoch(self) -> None:
+        parts = self._parts
+        parts.judge.begin_epoch()
+        self._tell_earlier()
+        parts.timesync.begin_epoch()
+        parts.conversation.begin_epoch()
+        self._jitter.begin_epoch()
+
+    def _tell_earlier(self) -> None:
+        """Tell the models which parameters held where a replay begins."""
+        replay, key = self._parts.replay, self.options.signing
+        if replay is not None:
+            told = b"".join(replay.parameters_before())
+            self._parts.judge.tell(Decoder(key if key is None else key.for_replay()).feed(told))
+
+    def _speak(self) -> None:
+        """Send what is due to the device."""
+        conversation = self._parts.conversation
+        for raw in self._parts.outlets.receive():
+            conversation.pass_on(raw)
+        conversation.learn(self.validator.untold)
+        conversation.poll()
+        if self.transport.live and self._parts.judge.source is not None:
+            request = self._parts.timesync.poll()
+            if request is not None:
+                conversation.send(request)
+
+    def _end_of_stream(self) -> None:
+        self._stream_ended = True
         if self.transport.live:
             raise DeviceError(
-                f"the device went away after {self.validator.samples} samples; "
+                f"the device went away after {self._parts.judge.samples} samples; "
                 "check its cable and power"
             )
 
-    def _silence(self) -> str:
-        """Say what was heard instead of samples."""
-        if self.validator.samples:
-            return f"the device stopped sending after {self.validator.samples} samples"
-        if self.decoder.frames:
-            said = f"; it says: {self._status_text!r}" if self._status_text else ""
-            return (
-                f"{self.decoder.frames} MAVLink messages came in {SILENCE_S:g} s, but no "
-                f"TILT_SAMPLE{said}"
-            )
-        if not self._heard:
-            return f"nothing was received in {SILENCE_S:g} s; is the device powered and wired?"
-        printable = sum(32 <= byte < 127 or byte in b"\r\n\t" for byte in self._heard)
-        if printable >= TEXT_SHARE * len(self._heard):
-            return f"the port carries text, not MAVLink: {self._heard[-60:]!r}"
-        return "bytes come that are not MAVLink 2; is the --baud rate that of the device?"
+    def _now_ns(self) -> int:
+        return int(self.clock.monotonic() * 1e9)
+
+    def _position_s(self) -> float:
+        """Return where on the time axis a new epoch begins."""
+        replay = self._parts.replay
+        if replay is not None:
+            return replay.chunk_begin_s
+        first = self._silence.first_s is None
+        return 0.0 if first or not self.transport.live else self._elapsed_s()
+
+    def _elapsed_s(self) -> float:
+        first_s = self._silence.first_s
+        return self.clock.monotonic() - (self._begun_s if first_s is None else first_s)
+
+    def _collect_anew(self) -> None:
+        self._overlay = OverlayCollector(len(self.validator.spec.axes))
+        self._jitter = JitterCollector()
+
+    def _result(self) -> SessionResult:
+        parts = self._parts
+        return SessionResult(
+            report=parts.judge.report(self.thresholds),
+            link=parts.receiver.statistics(),
+            duration_s=self._elapsed_s(),
+            thresholds=self.thresholds,
+            timing=parts.timesync.statistics(),
+            info=self._info,
+            device=parts.watches.status(parts.judge.source),
+            reconnects=parts.receiver.reconnects,
+            overlay=self._overlay.overlay(),
+            residual_histogram=self.validator.histograms(),
+            jitter_histogram=self._jitter.histogram(),
+            notices=parts.notices.latest(),
+        )
+
+    def _publish(self, *, ended: bool = False) -> None:
+        self._next_snapshot_s = self.clock.monotonic() + SNAPSHOT_EVERY_S
+        self._latest = self._parts.snapshot(elapsed_s=self._elapsed_s(), ended=ended)
+        for view in self.views:
+            view.take_snapshot(self._latest)

@@ -35,6 +35,8 @@ class Batch:
     begins
         True where a sample does not follow the one before it: a line is broken there. Shape
         ``(N,)``.
+    epoch
+        The epoch its samples belong to, as in `Snapshot`.
     """
 
     time_s: Vector
@@ -44,6 +46,7 @@ class Batch:
     residual_rad: Vector
     mismatch: NDArray[np.bool_]
     begins: NDArray[np.bool_]
+    epoch: int = 0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -58,7 +61,10 @@ class Batch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionInfo:
-    """What does not change while a session runs."""
+    """What does not change while a session runs.
+
+    `max_rms_deg` and `max_abs_deg` are what the residual is allowed; None is no limit.
+    """
 
     design_digest: str
     axes: tuple[Axis, ...]
@@ -69,6 +75,8 @@ class SessionInfo:
     port: str
     replay: bool
     hostkit_version: str
+    max_rms_deg: float | None = None
+    max_abs_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

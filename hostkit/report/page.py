@@ -58,6 +58,11 @@ def write_page(page: Page, path: Path) -> None:
     HostkitError
         If the file cannot be written.
     """
+    write_aside(path, page_text(page))
+
+
+def page_text(page: Page) -> str:
+    """Return a report as the text of its file."""
     env = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -66,5 +71,4 @@ def write_page(page: Page, path: Path) -> None:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    text = env.get_template("page.html.j2").render(page=page, version=__version__)
-    write_aside(path, text)
+    return env.get_template("page.html.j2").render(page=page, version=__version__)

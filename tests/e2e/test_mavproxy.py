@@ -1,20 +1,16 @@
 """MAVProxy, as its users run it, talks to the emulated ATmega328P over a pseudo-terminal."""
 
-import contextlib
-import importlib.util
-import re
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 from boards import require_or_skip
 from designs import design
+from station import PATIENCE_S, GroundStation, require_station
 
 from hostkit.design_file import save_design
 from hostkit.link.decoder import Decoder
@@ -24,73 +20,13 @@ from hostkit.simulation import SensorErrors, simulate
 
 DESIGN = design(accel_full_scale_g=4)
 TURN_ON_RATE_RAD_S = 0.05
-PATIENCE_S = 60.0
-MODULES = "link,param,cmdlong,calibration,misc"
-
-
-class GroundStation:
-    """A running MAVProxy: what is typed, and what it prints."""
-
-    def __init__(self, port: str, folder: Path) -> None:
-        self.folder = folder
-        command = [sys.executable, "-m", "MAVProxy.mavproxy", f"--master={port}"]
-        command += ["--baudrate=500000", f"--default-modules={MODULES}"]
-        command += [f"--state-basedir={folder}", f"--logfile={folder / 'link.tlog'}"]
-        self._child = subprocess.Popen(
-            command,
-            cwd=folder,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-        )
-        self.printed = ""
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self._child.stdout is not None
-        while piece := self._child.stdout.read(1):
-            self.printed += piece
-
-    def type(self, line: str) -> None:
-        assert self._child.stdin is not None
-        self._child.stdin.write(line + "\n")
-        self._child.stdin.flush()
-
-    def see(self, pattern: str, *, asking: str | None = None) -> re.Match[str]:
-        """Wait until it prints a text, typing a command every other second meanwhile."""
-        start, deadline = len(self.printed), time.monotonic() + PATIENCE_S
-        if asking is None:
-            start = 0
-        while time.monotonic() < deadline:
-            if asking is not None:
-                self.type(asking)
-            again = time.monotonic() + 2.0
-            while time.monotonic() < again:
-                if found := re.search(pattern, self.printed[start:]):
-                    return found
-                time.sleep(0.05)
-        pytest.fail(f"MAVProxy did not print {pattern!r}; it printed: {self.printed[-3000:]}")
-
-    def close(self) -> None:
-        with contextlib.suppress(BrokenPipeError):
-            self.type("exit")
-        try:
-            self._child.wait(10.0)
-        except subprocess.TimeoutExpired:
-            self._child.kill()
-            self._child.wait()
-        self._reader.join(5.0)
 
 
 @pytest.fixture(scope="module")
 def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A still sensor, whose gyroscope has an offset, on an emulated AVR."""
     require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
-    if importlib.util.find_spec("MAVProxy") is None:
-        pytest.skip("MAVProxy is not installed: pip install --no-deps MAVProxy")
+    require_station()
     folder = tmp_path_factory.mktemp("mavproxy")
     recording = simulate(
         "rest",

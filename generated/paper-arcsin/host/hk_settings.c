@@ -27,12 +27,14 @@ static void take_over(hk_app_t *app)
     /* The filter follows the bias by itself, and takes a new one only to start from. */
     const bool restart = memcmp(app->filter.settings.bias, app->parameters.filter.bias,
                                 sizeof app->parameters.filter.bias) != 0;
+#endif
 
+    app->filter.settings = app->parameters.filter;
+#ifdef HK_BIAS_LIMIT
     if (restart) {
         hk_filter_init(&app->filter);
     }
 #endif
-    app->filter.settings = app->parameters.filter;
     app->retuned = hk_parameters_retuned(&app->parameters);
 }
 
