@@ -1,7 +1,6 @@
 """What a page may ask of a session: each request checked, then passed on."""
 
 import json
-import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -75,7 +74,7 @@ def _number(body: Body, key: str, lowest: float, highest: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise BadRequestError(f"{key} is not a number")
     # Compared before it is converted: an integer may be too large for a float.
-    if not lowest <= value <= highest or not math.isfinite(value):
+    if not lowest <= value <= highest:
         raise BadRequestError(f"{key} is outside [{lowest:g}, {highest:g}]")
     return float(value)
 

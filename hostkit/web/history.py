@@ -54,12 +54,12 @@ class History:
             self._samples = 0
         self._batches.append(batch)
         self._samples += len(batch)
-        while len(self._batches) > 1 and self._too_much(batch.time_s[-1]):
+        while len(self._batches) > 1 and self._too_much(float(batch.time_s[-1])):
             self._samples -= len(self._batches.popleft())
 
     def _too_much(self, now_s: float) -> bool:
         # Written so that a time that is no number counts as too old.
-        recent = now_s - self._batches[0].time_s[-1] <= self._length_s
+        recent = now_s - float(self._batches[0].time_s[-1]) <= self._length_s
         return self._samples > self._most_samples or not recent
 
     def batches(self) -> tuple[Batch, ...]:

@@ -1,6 +1,7 @@
 """Who may talk to the server: checks of every request, and headers of every answer."""
 
 import hmac
+import ipaddress
 import logging
 import secrets
 from collections.abc import Iterable
@@ -49,19 +50,22 @@ class Access:
         foreign page can set.
     hosts
         Names, without a port, under which the server may be addressed.
+    any_address
+        Whether addresses in numbers are as good as those names. They cannot be rebound by DNS.
     """
 
     cookie_name: str
     hosts: frozenset[str]
+    any_address: bool = False
     token: str = field(default_factory=_secret, repr=False)
     cookie: str = field(default_factory=_secret, repr=False)
     csrf: str = field(default_factory=_secret, repr=False)
 
 
-def access(port: int, hosts: Iterable[str] = ()) -> Access:
+def access(port: int, hosts: Iterable[str] = (), *, any_address: bool = False) -> Access:
     """Return new secrets for a server at `port`; `hosts` are names beside those of loopback."""
     names = frozenset(name.lower() for name in (*LOOPBACK_NAMES, *hosts))
-    return Access(cookie_name=f"hostkit-{port}", hosts=names)
+    return Access(cookie_name=f"hostkit-{port}", hosts=names, any_address=any_address)
 
 
 def same(left: str, right: str) -> bool:
@@ -73,6 +77,17 @@ def host_name(host: str) -> str:
     """Return a Host header without its port, in lower case."""
     name, colon, port = host.rpartition(":")
     return (name if colon and port.isascii() and port.isdigit() else host).lower()
+
+
+def is_address(name: str) -> bool:
+    """Return whether a host is an IPv4 address, or an IPv6 address in brackets."""
+    bracketed = name.startswith("[") and name.endswith("]")
+    kind = ipaddress.IPv6Address if bracketed else ipaddress.IPv4Address
+    try:
+        kind(name[1:-1] if bracketed else name)
+    except ValueError:
+        return False
+    return True
 
 
 class Guard:
@@ -120,9 +135,10 @@ class Guard:
         hosts = headers.getlist("host")
         if len(hosts) != 1:
             return failure(400, "one Host header is needed")
-        if host_name(hosts[0]) in self._access.hosts:
+        name = host_name(hosts[0])
+        if name in self._access.hosts or (self._access.any_address and is_address(name)):
             return None
-        return failure(421, "the server is not known by this name; --web-allow-host adds one")
+        return failure(421, "the server is not known by this name")
 
     def _foreign_origin(self, scope: Scope, headers: Headers) -> ASGIApp | None:
         host = headers["host"].lower()

@@ -1,7 +1,6 @@
 """The server of the page: a thread beside the session, on loopback unless told otherwise."""
 
 import asyncio
-import errno
 import ipaddress
 import socket
 import threading
@@ -10,9 +9,10 @@ from pathlib import Path
 
 import uvicorn
 
-from hostkit.errors import DeviceError, HostkitError
+from hostkit.errors import DeviceError
 from hostkit.monitor.snapshot import Batch, Controls, Snapshot
 from hostkit.web.app import Reports, Served, application
+from hostkit.web.binding import is_any, listen, names
 from hostkit.web.protocol import BoundedProtocol
 from hostkit.web.security import access
 from hostkit.web.stream import Hub
@@ -21,12 +21,10 @@ START_S = 10.0
 STOP_S = 2.0
 GRACE_S = 1
 HEADER_BYTES = 16384
-SEND_BUFFER_BYTES = 262144
-"""What the kernel holds for a page that does not read: a bound on how far it can fall behind."""
-
 REMOTE_WARNING = (
-    "the page is open to the network at {host} without encryption: whoever listens can read its "
-    "token; `ssh -L {port}:127.0.0.1:{port} THIS_MACHINE` reaches it safely without this option"
+    "the page is open to the network at {host} without encryption: whoever listens in can read its "
+    "token and command the device; safer is 127.0.0.1 and, from the other machine, "
+    "`ssh -L {port}:127.0.0.1:{port} THIS_MACHINE`"
 )
 
 
@@ -69,11 +67,8 @@ class Server:
     ) -> None:
         self._socket = listen(host, port, allow_remote=allow_remote)
         address, self.port = self._socket.getsockname()[:2]
-        self._host = _in_url(address)
-        any_address = ipaddress.ip_address(address).is_unspecified
-        names = [*allowed_hosts, *([] if any_address else [self._host])]
-        self._shown_host = names[0] if names and any_address else self._host
-        self._access = access(self.port, names)
+        self._names = names(address, allowed_hosts)
+        self._access = access(self.port, self._names, any_address=is_any(address))
         self._hub = Hub(controls.info(), controls.snapshot())
         self._app = application(
             Served(
@@ -94,9 +89,7 @@ class Server:
     @property
     def url(self) -> str:
         """The address of the page with its token: to be shown to the user, and nowhere kept."""
-        host = "127.0.0.1" if self._shown_host == "0.0.0.0" else self._shown_host
-        host = "[::1]" if host == "[::]" else host
-        return f"http://{host}:{self.port}/?token={self._access.token}"
+        return f"http://{self._names[0]}:{self.port}/?token={self._access.token}"
 
     def start(self) -> str:
         """Serve in a thread; return `url`."""
@@ -130,11 +123,17 @@ class Server:
 
     async def _serve(self) -> None:
         self._loop = asyncio.get_running_loop()
+        serving = asyncio.create_task(self._uvicorn.serve(sockets=[self._socket]))
         flushing = asyncio.create_task(self._hub.run())
-        try:
-            await self._uvicorn.serve(sockets=[self._socket])
-        finally:
-            flushing.cancel()
+        await asyncio.wait((serving, flushing), return_when=asyncio.FIRST_COMPLETED)
+        if flushing.done():
+            # A page that stands still without a word would be worse than none.
+            self._hub.end()
+            self._uvicorn.should_exit = True
+            await serving
+            flushing.result()
+        flushing.cancel()
+        await serving
 
 
 class _Uvicorn(uvicorn.Server):
@@ -165,51 +164,3 @@ def _config(app: object) -> uvicorn.Config:
         timeout_graceful_shutdown=GRACE_S,
         h11_max_incomplete_event_size=HEADER_BYTES,
     )
-
-
-def listen(host: str, port: int, *, allow_remote: bool = False) -> socket.socket:
-    """Return a listening socket.
-
-    Raises
-    ------
-    HostkitError
-        If it would be reachable from elsewhere and that was not asked for.
-    DeviceError
-        If the name is unknown, or the address or the port cannot be had.
-    """
-    if not 0 <= port <= 65535:
-        raise DeviceError(f"port {port} is outside [0, 65535]")
-    try:
-        found = socket.getaddrinfo(host.strip("[]"), port, type=socket.SOCK_STREAM)
-    except (OSError, UnicodeError) as error:
-        raise DeviceError(f"{host!r} is no address of this machine: {error}") from error
-    family, _, _, _, address = found[0]
-    if not allow_remote and not ipaddress.ip_address(str(address[0])).is_loopback:
-        raise HostkitError(
-            f"{host} can be reached from other machines, and the page has no encryption; "
-            "127.0.0.1 is safe, --web-allow-remote overrides this"
-        )
-    return _bound(family, address, host, port)
-
-
-def _bound(
-    family: socket.AddressFamily, address: tuple[object, ...], host: str, port: int
-) -> socket.socket:
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
-        listener.bind(address)
-        listener.listen(128)
-    except OSError as error:
-        listener.close()
-        if error.errno == errno.EADDRINUSE:
-            raise DeviceError(
-                f"port {port} of {host} is in use by another program; --web-port 0 takes a free one"
-            ) from error
-        raise DeviceError(f"{host}:{port} cannot be listened on: {error}") from error
-    return listener
-
-
-def _in_url(address: str) -> str:
-    return f"[{address}]" if ":" in address else address

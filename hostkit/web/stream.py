@@ -142,7 +142,7 @@ class Hub:
             return None
         self.flush()
         client = Client(self.info)
-        client.tell(self._snapshot_text, self._missed)
+        client.tell(self._snapshot_text, self._missed + self._snapshot.missed_batches)
         if self._ended:
             client.end()
         self._clients.add(client)
@@ -187,7 +187,7 @@ class Hub:
     def _tell(self, snapshot: Snapshot) -> None:
         self._snapshot_text = encode_snapshot(snapshot)
         for client in self._clients:
-            client.tell(self._snapshot_text, self._missed)
+            client.tell(self._snapshot_text, self._missed + snapshot.missed_batches)
         if snapshot.ended:
             self.end()
 

@@ -63,9 +63,9 @@ class App:
             "method": method,
             "scheme": "http",
             "path": path,
-            "raw_path": path.encode("utf-8", "replace"),
+            "raw_path": path.encode("utf-8", "surrogatepass"),
             "root_path": "",
-            "query_string": query.encode("utf-8", "replace"),
+            "query_string": query.encode("utf-8", "surrogatepass"),
             "headers": [(name.encode("latin-1"), value.encode("latin-1")) for name, value in pairs],
             "client": ("127.0.0.1", 50000),
             "server": ("127.0.0.1", PORT),
@@ -97,8 +97,14 @@ async def _exchange(app, scope, body: bytes) -> Reply:
     )
 
 
-def make_app(folder: Path, *, replayed: bool = False, hosts: tuple[str, ...] = ()) -> App:
-    controls = FakeControls(folder=folder, replayed=replayed)
+def make_app(
+    folder: Path,
+    *,
+    replayed: bool = False,
+    hosts: tuple[str, ...] = (),
+    controls: FakeControls | None = None,
+) -> App:
+    controls = controls or FakeControls(folder=folder, replayed=replayed)
     rights = access(PORT, hosts)
     hub = Hub(controls.info(), controls.snapshot())
     app = application(
@@ -108,9 +114,12 @@ def make_app(folder: Path, *, replayed: bool = False, hosts: tuple[str, ...] = (
 
 
 @contextlib.contextmanager
-def running(folder: Path, **options) -> Iterator[tuple[Server, httpx.Client]]:
+def running(
+    folder: Path, *, controls: FakeControls | None = None, **options
+) -> Iterator[tuple[Server, httpx.Client]]:
     """Run a server, and give a client that is signed in."""
-    server = Server(FakeControls(folder=folder), reports=FakeReports(), folder=folder, **options)
+    controls = controls or FakeControls(folder=folder)
+    server = Server(controls, reports=FakeReports(), folder=folder, **options)
     try:
         url = server.start()
         with httpx.Client(base_url=url.partition("?")[0], timeout=10.0) as client:
