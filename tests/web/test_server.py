@@ -129,6 +129,7 @@ def test_a_stuck_page_holds_up_nobody(tmp_path: Path, monkeypatch: pytest.Monkey
             s.stop()
             assert time.monotonic() - begun_s < STOP_S
             assert listener.ended()
+            until(lambda: not s._thread.is_alive())
         assert connection.fileno() > 0
 
 
@@ -171,10 +172,12 @@ def test_stop_is_quick_and_may_come_twice_or_before_start(tmp_path: Path) -> Non
     idle.stop()
     with running(tmp_path) as (s, client), Listener(client) as listener:
         listener.wait(lambda events: bool(events))
+        s.take_batch(batch(0, 5))
         begun_s = time.monotonic()
         s.stop()
         assert time.monotonic() - begun_s < STOP_S
         assert listener.ended()
+        assert len(times(listener.events)) == 5
         with pytest.raises(httpx.ConnectError):
             client.get("/api/session")
         s.stop()
