@@ -17,6 +17,7 @@ BENCHES = (
     "device",
     "fpga",
     "large",
+    "decode",
     "monitor",
 )
 """Modules of this folder; each has a function `tables`."""
