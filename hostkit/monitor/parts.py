@@ -21,7 +21,7 @@ from hostkit.monitor.receiver import Receiver
 from hostkit.monitor.recordings import Recordings
 from hostkit.monitor.snapshot import ReplayState, SessionInfo, Snapshot
 from hostkit.records import AXES, FilterDesign
-from hostkit.validation import Thresholds
+from hostkit.validation import Thresholds, Validator
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +71,7 @@ class Parts:
     clock: Clock
     notices: Notices
     receiver: Receiver
+    validator: Validator
     judge: Judge
     conversation: Conversation
     timesync: TimeSync

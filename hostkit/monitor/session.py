@@ -1,30 +1,24 @@
 """A session: bytes from a port through decoder and models to views, recordings and a verdict."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from functools import partial
-from pathlib import Path
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock, SystemClock
 from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.encoder import Encoder
-from hostkit.link.timesync import TimeSync
 from hostkit.link.transport import Transport
+from hostkit.monitor.assembly import assemble, now_ns
 from hostkit.monitor.collect import JitterCollector, OverlayCollector
 from hostkit.monitor.controls import SessionControls
-from hostkit.monitor.conversation import Conversation
 from hostkit.monitor.inbox import Inbox
-from hostkit.monitor.judge import Judge, Stretch
-from hostkit.monitor.notices import Notices
+from hostkit.monitor.judge import Stretch
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.parts import Parts, SessionOptions, session_info
-from hostkit.monitor.receiver import Received, Receiver
-from hostkit.monitor.recordings import Recorder, Recordings
+from hostkit.monitor.receiver import Received
+from hostkit.monitor.recordings import Recorder
 from hostkit.monitor.requests import SessionRequests
 from hostkit.monitor.result import SessionResult
-from hostkit.monitor.sample_files import open_recorder
 from hostkit.monitor.silence import SilenceWatch
 from hostkit.monitor.snapshot import Controls, SessionInfo, Snapshot, View
 from hostkit.records import FilterDesign
@@ -81,8 +75,17 @@ class Session:
 
     def __post_init__(self) -> None:
         """Put the parts together."""
-        self._parts = self._put_together()
-        parts = self._parts
+        own = () if self.recorder is None else (self.recorder,)
+        self._parts = parts = assemble(
+            self.design,
+            self.transport,
+            self.thresholds,
+            self.options,
+            self.clock,
+            recorders=(*own, *self.recorders),
+            outlets=self.outlets,
+        )
+        self.validator = parts.validator
         self._silence = SilenceWatch(
             self.transport,
             parts.receiver,
@@ -102,44 +105,6 @@ class Session:
             lambda: self._latest,
             parts.recordings.check,
         )
-
-    def _put_together(self) -> Parts:
-        options, clock, transport = self.options, self.clock, self.transport
-        self.validator = Validator(
-            self.design, tolerance_rad=options.tolerance_rad, as_designed=options.as_designed
-        )
-        notices = Notices(clock)
-        own = () if self.recorder is None else (self.recorder,)
-        key = options.signing
-        decoder = Decoder(key if key is None or transport.live else key.for_replay())
-        encoder, silent = Encoder(key), options.passive or not transport.live
-        return Parts(
-            design=self.design,
-            thresholds=self.thresholds,
-            transport=transport,
-            clock=clock,
-            notices=notices,
-            receiver=Receiver(transport, decoder, clock, notices),
-            judge=Judge(
-                self.design,
-                self.validator,
-                notices,
-                system=options.system,
-                as_designed=options.as_designed,
-            ),
-            conversation=Conversation(
-                transport, encoder, clock, notices, self.design, silent=silent
-            ),
-            timesync=TimeSync(self._now_ns),
-            recordings=Recordings(
-                (*own, *self.recorders), notices, folder=options.folder, opener=self._opener
-            ),
-            outlets=self.outlets,
-        )
-
-    @property
-    def _opener(self) -> Callable[[Path], Recorder]:
-        return partial(open_recorder, design=self.design, system=self.options.system)
 
     def stop(self) -> None:
         """End the session soon; may be called from any thread and from a signal handler."""
@@ -193,11 +158,11 @@ class Session:
     def _is_over(self) -> bool:
         if self._stopped:
             return True
-        first_s = self._silence.first_s
-        if first_s is not None and self.duration_s is not None:
-            time_is_up = self.clock.monotonic() - first_s >= self.duration_s
-        else:
-            time_is_up = False
+        time_is_up = (
+            self.duration_s is not None
+            and self._silence.first_s is not None
+            and self._elapsed_s() >= self.duration_s
+        )
         at_end = self._stream_ended or self._parts.judge.refused
         return time_is_up or (at_end and not self.options.stays)
 
@@ -215,7 +180,7 @@ class Session:
 
     def _take(self, received: Received) -> None:
         """Give what came to everybody."""
-        parts, received_ns = self._parts, self._now_ns()
+        parts, received_ns = self._parts, now_ns(self.clock)
         if received.opened_anew:
             self._begin_epoch()
         if received.ended:
@@ -296,9 +261,6 @@ class Session:
                 f"the device went away after {self._parts.judge.samples} samples; "
                 "check its cable and power"
             )
-
-    def _now_ns(self) -> int:
-        return int(self.clock.monotonic() * 1e9)
 
     def _position_s(self) -> float:
         """Return where on the time axis a new epoch begins."""

@@ -15,14 +15,15 @@ from hostkit.cli.main import run
 from hostkit.design_file import save_design
 from hostkit.emulation.pty_server import PtyPort
 
-SAMPLES = 3000
+SAMPLES, CHUNK_BYTES = 2000, 2048
 
 
 def send(port: PtyPort, data: bytes) -> None:
-    """Say everything to the first reader that comes."""
-    while not port.listening():
+    """Say everything once the reader has spoken: what comes while it opens the port it drops."""
+    while not (port.listening() and port.receive()):
         threading.Event().wait(0.01)
-    port.send(data)
+    for begin in range(0, len(data), CHUNK_BYTES):
+        port.send(data[begin : begin + CHUNK_BYTES])
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -36,7 +37,7 @@ def test_the_counts_are_exact_and_no_step_is_called_wrong(
         sender = threading.Thread(target=send, args=(port, data), daemon=True)
         sender.start()
         arguments = ["monitor", str(tmp_path / "design.json"), "--port", port.path, "--json"]
-        arguments += ["--duration", "1.5", "--max-lost-percent", "100", "--baud", "500000"]
+        arguments += ["--duration", "3", "--max-lost-percent", "100", "--baud", "500000"]
         code = run(arguments)
         sender.join(10.0)
     out, err = capsys.readouterr()

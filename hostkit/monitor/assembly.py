@@ -1,0 +1,66 @@
+"""Putting the parts of a session together."""
+
+from collections.abc import Sequence
+from functools import partial
+
+from hostkit.link.clock import Clock
+from hostkit.link.decoder import Decoder
+from hostkit.link.encoder import Encoder
+from hostkit.link.timesync import TimeSync
+from hostkit.link.transport import Transport
+from hostkit.monitor.conversation import Conversation
+from hostkit.monitor.judge import Judge
+from hostkit.monitor.notices import Notices
+from hostkit.monitor.outlets import Outlets
+from hostkit.monitor.parts import Parts, SessionOptions
+from hostkit.monitor.receiver import Receiver
+from hostkit.monitor.recordings import Recorder, Recordings
+from hostkit.monitor.sample_files import open_recorder
+from hostkit.records import FilterDesign
+from hostkit.validation import Thresholds, Validator
+
+
+def now_ns(clock: Clock) -> int:
+    """Return nanoseconds that only rise."""
+    return int(clock.monotonic() * 1e9)
+
+
+def assemble(
+    design: FilterDesign,
+    transport: Transport,
+    thresholds: Thresholds,
+    options: SessionOptions,
+    clock: Clock,
+    *,
+    recorders: Sequence[Recorder],
+    outlets: Outlets,
+) -> Parts:
+    """Return the parts of a session; a recorded device is only listened to."""
+    notices, key = Notices(clock), options.signing
+    silent = options.passive or not transport.live
+    decoder = Decoder(key if key is None or transport.live else key.for_replay())
+    validator = Validator(
+        design, tolerance_rad=options.tolerance_rad, as_designed=options.as_designed
+    )
+    judge = Judge(
+        design, validator, notices, system=options.system, as_designed=options.as_designed
+    )
+    return Parts(
+        design=design,
+        thresholds=thresholds,
+        transport=transport,
+        clock=clock,
+        notices=notices,
+        receiver=Receiver(transport, decoder, clock, notices),
+        validator=validator,
+        judge=judge,
+        conversation=Conversation(transport, Encoder(key), clock, notices, design, silent=silent),
+        timesync=TimeSync(partial(now_ns, clock)),
+        recordings=Recordings(
+            recorders,
+            notices,
+            folder=options.folder,
+            opener=partial(open_recorder, design=design, system=options.system),
+        ),
+        outlets=outlets,
+    )
