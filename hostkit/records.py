@@ -267,6 +267,8 @@ class ValidationReport:
     stride
         Greatest step of the sample counter that the device kept to on purpose; 1 where it sends
         every sample.
+    tolerance_rad
+        That tolerance; None for a filter in integers.
     untold
         Parameters in use that are not the design's and whose value the device has not told.
     rms_rad, max_rad
@@ -291,6 +293,7 @@ class ValidationReport:
     repeated: int = 0
     unjudged: int = 0
     stride: int = 1
+    tolerance_rad: float | None = None
     untold: tuple[str, ...] = field(default=())
     residual: tuple[ResidualStatistics, ...] = field(default=())
     retuned: tuple[RetunedParameter, ...] = field(default=())

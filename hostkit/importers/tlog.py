@@ -16,8 +16,9 @@ from hostkit.importers.log import Importer, Progress, ReferenceTrack, SensorLog,
 from hostkit.importers.options import ImportOptions
 from hostkit.importers.rotation import attitude_from_frd, from_euler, from_frd
 from hostkit.importers.timebase import seconds, unwrapped
+from hostkit.importers.tlog_arrival import arrived_attitude
 from hostkit.importers.units import M_S2_PER, RAD_S_PER, force_scale, rate_scale
-from hostkit.link.tlog import MAGIC_V1, STAMP, read_tlog
+from hostkit.link.tlog import MAGIC_V1, STAMP, read_stamped
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
 from hostkit.units import STANDARD_GRAVITY_M_S2
@@ -75,6 +76,11 @@ class _Source:
     rows: Vector
     said: str
 
+    @property
+    def key(self) -> Key:
+        """What its rows are found by."""
+        return self.name, self.system, self.component
+
 
 def sniff(path: Path) -> bool:
     """Tell whether a MAVLink frame follows eight bytes, and the next one where it ends."""
@@ -97,11 +103,11 @@ def read(path: Path, options: ImportOptions, progress: Progress) -> SensorLog:
     DesignError
         If the design file is not one.
     """
-    streams = _streams(path, progress)
+    streams, delays = _streams(path, progress)
     source = _choose(streams, options)
     start = int(source.rows[0, 0])
     if source.name == "TILT_SAMPLE":
-        return _tilt_log(source, start, options)
+        return _tilt_log(source, start, options, *arrived_attitude(streams, delays, source.key))
     time_s = seconds(unwrapped(source.rows[:, 0])[0].astype(np.int64), 1e6, start)
     force, rate, said = _in_si(source, time_s, options)
     reference, said_reference = _reference(streams, source, start, time_s)
@@ -115,8 +121,8 @@ def read(path: Path, options: ImportOptions, progress: Progress) -> SensorLog:
     )
 
 
-def _streams(path: Path, progress: Progress) -> dict[Key, list[Row]]:
-    """Return the rows of every message that is of use, by its sender."""
+def _streams(path: Path, progress: Progress) -> tuple[dict[Key, list[Row]], dict[Key, float]]:
+    """Return the rows of every message that is of use, and the shortest delay, by its sender."""
     from pymavlink.dialects.v20 import common
 
     own = python_module()
@@ -126,31 +132,37 @@ def _streams(path: Path, progress: Progress) -> dict[Key, list[Row]]:
     for parser in parsers.values():
         parser.robust_parsing = True
     streams: dict[Key, list[Row]] = defaultdict(list)
+    delays: dict[Key, float] = {}
     done, total = 0, path.stat().st_size
     try:
         with reading("tlog"):
-            for frame in read_tlog(path):
+            for arrived_us, frame in read_stamped(path):
                 done += len(frame) + STAMP.size
                 module = wanted.get(_message_id(frame))
                 if module is not None:
                     progress(done, total)
-                    _take(parsers[module], frame, streams)
+                    key = _take(parsers[module], frame, streams)
+                    if key is not None:
+                        delay_us = arrived_us - streams[key][-1][0]
+                        delays[key] = min(delays.get(key, delay_us), delay_us)
     except DeviceError as error:
         raise RecordingError(str(error).removeprefix(f"{path} ")) from error
-    return streams
+    return streams, delays
 
 
 def _message_id(frame: bytes) -> int:
     return frame[5] if frame[0] == MAGIC_V1 else int.from_bytes(frame[7:10], "little")
 
 
-def _take(parser: Any, frame: bytes, streams: dict[Key, list[Row]]) -> None:
-    """Decode one frame; what fails its checksum is left out."""
+def _take(parser: Any, frame: bytes, streams: dict[Key, list[Row]]) -> Key | None:
+    """Decode one frame and return whose it is; what fails its checksum is left out."""
+    taken = None
     for message in parser.parse_buffer(frame) or []:
         name = message.get_type()
         if name in ROWS:
-            key = (name, message.get_srcSystem(), message.get_srcComponent())
-            streams[key].append(ROWS[name](message))
+            taken = (name, message.get_srcSystem(), message.get_srcComponent())
+            streams[taken].append(ROWS[name](message))
+    return taken
 
 
 def _choose(streams: dict[Key, list[Row]], options: ImportOptions) -> _Source:
@@ -219,7 +231,13 @@ def _in_si(
     return force, rate * turned.factor, (*said, found.guessed, turned.guessed)
 
 
-def _tilt_log(source: _Source, start: int, options: ImportOptions) -> SensorLog:
+def _tilt_log(
+    source: _Source,
+    start: int,
+    options: ImportOptions,
+    reference: ReferenceTrack | None,
+    said: str,
+) -> SensorLog:
     """Scale raw counts by the ranges of the design; they are in sensor axes already."""
     if options.design is None:
         raise RecordingError(
@@ -236,7 +254,11 @@ def _tilt_log(source: _Source, start: int, options: ImportOptions) -> SensorLog:
         angular_rate_rad_s=rate,
         specific_force_m_s2=force_g * STANDARD_GRAVITY_M_S2,
         sensor=SENSORS[sensor.part].title,
-        guessed=("the device's own angles are no reference and are left out",),
+        reference=reference if options.reference else None,
+        guessed=(
+            "the device's own angles are no reference and are left out",
+            *([said] * bool(said)),
+        ),
     )
 
 

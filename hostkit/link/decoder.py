@@ -74,7 +74,8 @@ class Decoder:
     ----------
     signing
         With a key, frames without a right and fresh signature are refused and counted; their
-        numbers are not used. Without one, signed frames are taken like any other.
+        numbers are not used. A signed frame that comes again or late is not fresh: it counts as
+        refused, and the late one stays lost. Without a key, signed frames are taken like others.
     """
 
     __slots__ = ("_framer", "_sequences", "_signatures", "bad_signatures")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock, SystemClock
+from hostkit.link.parameter_history import parameter_history
 from hostkit.link.tlog import stamped_frames
 from hostkit.link.tlog_index import LONGEST_GAP_US, US_PER_S, index_tlog
 from hostkit.link.transport import PortState
@@ -60,6 +61,7 @@ class ReplayTransport:
             self._file.close()
             raise
         self.length_s = self._index.length_s
+        self._parameters = parameter_history(self._file)
         self._go_to(0.0)
 
     def read(self, timeout_s: float) -> bytes | None:
@@ -99,6 +101,12 @@ class ReplayTransport:
         self._go_to(min(max(position_s, 0.0), self.length_s))
         self.epoch += 1
         self.state = "connected"
+
+    def parameters_before(self) -> list[bytes]:
+        """Return the latest PARAM_VALUE frame of each parameter before the next frame."""
+        position_us = self._index.first_us + int(self.position_s * US_PER_S)
+        latest = {told.key: told.frame for told in self._parameters if told.time_us < position_us}
+        return list(latest.values())
 
     def _go_to(self, position_s: float) -> None:
         mark = self._index.before(position_s)

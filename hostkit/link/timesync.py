@@ -25,6 +25,8 @@ RECENT_NS = 30_000_000_000
 BLOCK_NS = 5_000_000_000
 """The clock rate is read off the shortest round trip of each block of so long."""
 LEAST_BLOCKS = 3
+MOST_DOUBT = 20e-6
+"""A rate is told when round trips are even enough, or time is long enough, to know it so well."""
 LONGEST_ROUND_TRIP_NS = 10_000_000_000
 JUMP_NS = 100_000_000
 """A device whose clock jumps further than any delay explains has begun anew."""
@@ -230,9 +232,10 @@ def _clock_ppm(answers: list[Answer]) -> float | None:
         block = answer.host_ns // BLOCK_NS
         if block not in best or answer.round_trip_ns < best[block].round_trip_ns:
             best[block] = answer
-    if len(best) < LEAST_BLOCKS:
+    begin, trips_ns = answers[0], [a.round_trip_ns for a in best.values()]
+    doubt_ns = (max(trips_ns) - min(trips_ns)) / 2
+    if len(best) < LEAST_BLOCKS or doubt_ns > MOST_DOUBT * (answers[-1].host_ns - begin.host_ns):
         return None
-    begin = answers[0]
     time_s = np.array([a.host_ns - begin.host_ns for a in best.values()]) * 1e-9
     offset_s = np.array([a.offset_ns - begin.offset_ns for a in best.values()]) * 1e-9
     time_s -= time_s.mean()

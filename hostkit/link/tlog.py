@@ -30,17 +30,28 @@ def read_tlog(path: Path) -> Generator[bytes, None, None]:
     DeviceError
         If the file cannot be read, or does not begin like a tlog.
     """
+    stamped = read_stamped(path)
+    return (frame for _, frame in stamped)
+
+
+def read_stamped(path: Path) -> Generator[tuple[int, bytes], None, None]:
+    """Yield the frames of a tlog with their times of arrival, us since 1970.
+
+    Raises
+    ------
+    DeviceError
+        If the file cannot be read, or does not begin like a tlog.
+    """
     try:
         file = path.open("rb")
     except OSError as error:
         raise DeviceError(f"{path} cannot be read: {error.strerror}") from error
-    return _frames(file, path)
+    return _closing(file, path)
 
 
-def _frames(file: BinaryIO, path: Path) -> Generator[bytes, None, None]:
+def _closing(file: BinaryIO, path: Path) -> Generator[tuple[int, bytes], None, None]:
     with file:
-        for _, frame in stamped_frames(file, path):
-            yield frame
+        yield from stamped_frames(file, path)
 
 
 def stamped_frames(file: BinaryIO, path: Path) -> Generator[tuple[int, bytes], None, None]:

@@ -18,6 +18,7 @@ from hostkit.records import FilterDesign
 
 HEARTBEAT_EVERY_S = 1.0
 VERSION_EVERY_S = 2.0
+LIST_EVERY_S = 2.0
 VERSION_TRIES = 5
 
 STATION_TYPE, NO_AUTOPILOT, MAVLINK_VERSION = 6, 8, 3
@@ -58,6 +59,7 @@ class Conversation:
         self._next_heartbeat_s = self._next_version_s = clock.monotonic()
         self._version_tries = 0
         self._command_told: CommandState | None = None
+        self._next_list_s = 0.0
 
     def send(self, message: Any) -> None:
         """Send a message of the dialect, unless nothing is to be sent."""
@@ -84,6 +86,14 @@ class Conversation:
         self._version_tries = 0
         self._parameters.begin_epoch()
         self._commands.begin_epoch()
+
+    def learn(self, untold: tuple[str, ...]) -> None:
+        """Ask for all parameters, now and then, while the device has not told some that it uses."""
+        now_s = self._clock.monotonic()
+        due = now_s >= self._next_list_s and not self._silent
+        if untold and due and not self._parameters.listing:
+            self._next_list_s = now_s + LIST_EVERY_S
+            self._parameters.request_all()
 
     def take(self, frame: Frame) -> None:
         """Take any frame that came."""

@@ -31,6 +31,7 @@ def monitor_document(result: SessionResult) -> Document:
         "max_deg": _deg(report.max_rad),
         "residual": [_residual(entry) for entry in report.residual],
         "mismatches": report.mismatches,
+        "tolerance_deg": _deg(report.tolerance_rad),
         "retuned": [_retuned(entry) for entry in report.retuned],
         "untold": list(report.untold),
         "digest_ok": report.digest_ok,

@@ -19,6 +19,8 @@ MOST_OTHERS = 8
 """Other devices that are told of; a hostile stream may claim any number."""
 
 PARAMETER = "PARAM_VALUE"
+MOST_EARLIER = 256
+"""Parameters that are kept until it is known whose they are."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +73,7 @@ class Judge:
         self._digest = np.frombuffer(bytes.fromhex(digest(design)), dtype=np.uint8)
         self._period_s = design.period_s
         self._others: set[Source] = set()
+        self._earlier: list[Frame] = []
         self._newest_us: int | None = None
         self._newest_s = 0.0
         self._is_retuned = False
@@ -101,10 +104,16 @@ class Judge:
         self.other_digest, self._is_retuned = None, False
 
     def tell(self, frames: list[Frame]) -> None:
-        """Take parameters that the device told earlier."""
-        for frame in frames:
-            if frame.name == PARAMETER and frame.source == self.source:
+        """Take parameters that devices told earlier; they count once it is known which is ours."""
+        self._earlier = [frame for frame in frames if frame.name == PARAMETER]
+        if self.source is not None:
+            self._take_earlier()
+
+    def _take_earlier(self) -> None:
+        for frame in self._earlier:
+            if frame.source == self.source:
                 self._told(frame)
+        self._earlier = []
 
     def take(
         self, frames: list[Frame], received_s: float, position_s: Callable[[], float]
@@ -122,10 +131,14 @@ class Judge:
         for frame in frames:
             if self._is_ours(frame):
                 run.append(frame)
-            elif frame.name == PARAMETER and frame.source == self.source and not frame.repeated:
+            elif frame.name != PARAMETER or frame.repeated:
+                continue
+            elif frame.source == self.source:
                 yield from self._judge(run, received_s, position_s)
                 run = []
                 self._told(frame)
+            elif self.source is None and len(self._earlier) < MOST_EARLIER:
+                self._earlier.append(frame)
         yield from self._judge(run, received_s, position_s)
 
     def _judge(
@@ -185,6 +198,7 @@ class Judge:
             return True
         if self.source is None and self._system in (None, frame.source[0]):
             self.source = frame.source
+            self._take_earlier()
             return True
         self._tell_other(frame.source)
         return False

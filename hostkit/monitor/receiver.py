@@ -30,6 +30,7 @@ class Received:
     frames: list[Frame]
     ended: bool = False
     opened_anew: bool = False
+    lost_some: bool = False
 
 
 class Receiver:
@@ -50,7 +51,7 @@ class Receiver:
         self._clock, self._notices = clock, notices
         self._epoch, self._state = transport.epoch, transport.state
         self._left_s = 0.0
-        self._overrun_bytes = 0
+        self._overrun_bytes = self._lost_frames = 0
         self._understood = False
         self.reconnects = 0
         self.heard = b""
@@ -67,7 +68,9 @@ class Receiver:
             self.heard = (self.heard + data)[-HEARD_BYTES:]
         frames = self.decoder.feed(data)
         self._understood = self._understood or bool(frames)
-        return Received(frames=frames, opened_anew=opened_anew)
+        before, self._lost_frames = self._lost_frames, self.decoder.lost_frames
+        lost_some = self._lost_frames != before
+        return Received(frames=frames, opened_anew=opened_anew, lost_some=lost_some)
 
     def _follow_port(self) -> bool:
         """Compare the port with what it was; tell whether it was opened anew."""

@@ -177,6 +177,7 @@ class Session:
         """
         self._begun_s = self.clock.monotonic()
         self._silence.begin()
+        self._tell_earlier()
         try:
             while not self._is_over():
                 self._turn()
@@ -206,6 +207,8 @@ class Session:
         if not self._stream_ended or self.transport.state != "ended":
             self._stream_ended = False
             self._take(self._parts.receiver.receive(POLL_S))
+            if self._stream_ended:
+                self._publish()
         self._speak()
         if self.clock.monotonic() >= self._next_snapshot_s:
             self._publish()
@@ -217,6 +220,8 @@ class Session:
             self._begin_epoch()
         if received.ended:
             self._end_of_stream()
+        if received.lost_some:
+            self.validator.doubt_parameters()
         frames = received.frames
         parts.recordings.add(int(self.clock.time() * 1e6), frames)
         parts.outlets.send(frames)
@@ -260,15 +265,24 @@ class Session:
     def _begin_epoch(self) -> None:
         parts = self._parts
         parts.judge.begin_epoch()
+        self._tell_earlier()
         parts.timesync.begin_epoch()
         parts.conversation.begin_epoch()
         self._jitter.begin_epoch()
+
+    def _tell_earlier(self) -> None:
+        """Tell the models which parameters held where a replay begins."""
+        replay, key = self._parts.replay, self.options.signing
+        if replay is not None:
+            told = b"".join(replay.parameters_before())
+            self._parts.judge.tell(Decoder(key if key is None else key.for_replay()).feed(told))
 
     def _speak(self) -> None:
         """Send what is due to the device."""
         conversation = self._parts.conversation
         for raw in self._parts.outlets.receive():
             conversation.pass_on(raw)
+        conversation.learn(self.validator.untold)
         conversation.poll()
         if self.transport.live and self._parts.judge.source is not None:
             request = self._parts.timesync.poll()

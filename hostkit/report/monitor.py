@@ -5,7 +5,7 @@ from pathlib import Path
 from hostkit.files import write_aside
 from hostkit.link.statistics import Spread
 from hostkit.monitor.result import SessionResult
-from hostkit.records import ResidualStatistics
+from hostkit.records import ResidualStatistics, ValidationReport
 from hostkit.report import monitor_figures as figures
 from hostkit.report.page import Fact, Page, Plot, Table, page_text
 from hostkit.report.plain_text import plain_text
@@ -67,7 +67,7 @@ def _facts(result: SessionResult) -> tuple[Fact, ...]:
     report = result.report
     return (
         Fact(label="samples", value=str(report.samples), note=f"{report.checked} steps checked"),
-        Fact(label="mismatches", value=str(report.mismatches), note="against the integer model"),
+        Fact(label="mismatches", value=str(report.mismatches), note=_judged_by(report)),
         Fact(label="residual", value=_deg(report.rms_rad), note="rms, against the float model"),
         Fact(label="largest residual", value=_deg(report.max_rad)),
         Fact(
@@ -76,6 +76,12 @@ def _facts(result: SessionResult) -> tuple[Fact, ...]:
             note=f"{report.late} late, {report.repeated} repeated",
         ),
     )
+
+
+def _judged_by(report: ValidationReport) -> str:
+    if report.tolerance_rad is None:
+        return "against the integer model"
+    return f"beyond {report.tolerance_rad * DEG_PER_RAD:.3g} deg of the float model"
 
 
 def _reasons(result: SessionResult) -> tuple[Table, ...]:

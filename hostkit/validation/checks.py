@@ -54,7 +54,10 @@ def _steps(report: ValidationReport) -> Check:
     if not report.checked:
         reason = "no step could be checked"
     elif report.mismatches:
-        reason = f"{report.mismatches} of {report.checked} steps differ from the integer model"
+        model = "the integer model"
+        if report.tolerance_rad is not None:
+            model = f"the float model by more than {report.tolerance_rad * DEG_PER_RAD:.3g} deg"
+        reason = f"{report.mismatches} of {report.checked} steps differ from {model}"
     figure = f"{report.mismatches} of {report.checked} wrong"
     return Check(name="steps", figure=figure, limit="0", reason=reason)
 

@@ -63,7 +63,7 @@ class Validator:
         if tolerance_rad is not None and not (math.isfinite(tolerance_rad) and tolerance_rad > 0):
             raise HostkitError(f"tolerance_rad = {tolerance_rad}; it must be a number above 0")
         self._axes, self._period_s = AXES[design.axes], design.period_s
-        self._as_designed = as_designed
+        self._as_designed, self._tolerance_rad = as_designed, tolerance_rad
         self._retuning = Retuning(design)
         self.spec = self._retuning.designed.spec
         self._follower = Follower(design, self._retuning.designed, tolerance_rad)
@@ -260,6 +260,7 @@ class Validator:
             repeated=self._order.repeated,
             unjudged=min(self.samples, self._unjudged + self._order.thinned),
             stride=self._order.widest_stride,
+            tolerance_rad=self._tolerance_rad,
             untold=self.untold,
             residual=tuple(entry for entry in residual if entry is not None),
             retuned=self._retuning.differences() if self._was_retuned else (),

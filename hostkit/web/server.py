@@ -123,11 +123,17 @@ class Server:
 
     async def _serve(self) -> None:
         self._loop = asyncio.get_running_loop()
+        serving = asyncio.create_task(self._uvicorn.serve(sockets=[self._socket]))
         flushing = asyncio.create_task(self._hub.run())
-        try:
-            await self._uvicorn.serve(sockets=[self._socket])
-        finally:
-            flushing.cancel()
+        await asyncio.wait((serving, flushing), return_when=asyncio.FIRST_COMPLETED)
+        if flushing.done():
+            # A page that stands still without a word would be worse than none.
+            self._hub.end()
+            self._uvicorn.should_exit = True
+            await serving
+            flushing.result()
+        flushing.cancel()
+        await serving
 
 
 class _Uvicorn(uvicorn.Server):

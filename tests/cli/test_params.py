@@ -20,6 +20,7 @@ from pymavlink.mavparm import MAVParmDict
 from hostkit.cli.main import run
 from hostkit.design_file import digest, save_design
 from hostkit.link.encoder import Encoder
+from hostkit.link.parameter_facts import parameter_facts
 from hostkit.link.signing import SigningKey, setup_signing_message
 from hostkit.recordings import save
 from hostkit.simulation import SensorErrors, simulate
@@ -262,7 +263,11 @@ def go_through_all(port: str, design_file: Path, tmp_path: Path, capsys) -> None
 
     got = params("get")
     assert [row["name"] for row in got["parameters"]] == NAMES
+    assert set(parameter_facts(DESIGN)) == set(NAMES)
     assert got["digest"] == digest(DESIGN)
+    of_filter = [row for row in got["parameters"] if row["design_value"] is not None]
+    assert [row["name"] for row in of_filter] == NAMES[2:]
+    assert all(row["value"] == row["design_value"] for row in of_filter)
     tau = got["parameters"][2]
     assert tau["value"] == tau["design_value"] == pytest.approx(2.8471, rel=1e-4)
     assert tau["eta"] == pytest.approx(0.9965, abs=1e-6)

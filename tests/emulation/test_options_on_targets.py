@@ -67,7 +67,7 @@ def test_the_hidden_words_are_those_of_the_integer_model(code, board) -> None:
 class Stream:
     """What a board sent, as a port that ends."""
 
-    live = False
+    live, state, epoch, overrun_bytes = False, "connected", 0, 0
 
     def __init__(self, stream: bytes) -> None:
         self._stream = stream
@@ -75,6 +75,9 @@ class Stream:
     def read(self, timeout_s: float) -> bytes | None:
         piece, self._stream = self._stream[:4096], self._stream[4096:]
         return piece or None
+
+    def write(self, data: bytes) -> None:
+        pass
 
     def close(self) -> None:
         pass

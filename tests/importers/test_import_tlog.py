@@ -8,6 +8,7 @@ import pytest
 from foreign_logs import G, attitudes, close, highres, link, tilted, tlog
 from pymavlink.dialects.v10 import common as common_v1
 
+from hostkit.cli.main import run
 from hostkit.design_file import save_design
 from hostkit.dialect import python_module
 from hostkit.errors import RecordingError
@@ -143,30 +144,73 @@ def test_damaged_frames_are_left_out(tmp_path: Path, truth, bring, to_frd) -> No
     np.testing.assert_allclose(got.specific_force_m_s2, truth.specific_force_m_s2[1:-1], atol=1e-5)
 
 
-def test_tilt_samples_need_the_design(tmp_path: Path, truth, bring) -> None:
-    sensor = SensorConfig(
+DESIGN = FilterDesign(
+    filter="complementary", axes="both", tilt="atan2", mounting=Mounting(), rate_hz=100.0,
+    sensor=SensorConfig(
         part="mpu6050", gyro_full_scale_deg_s=500, accel_full_scale_g=4, low_pass_setting=3
-    )
-    part = SENSORS["mpu6050"]
+    ),
+    parameters=(Parameter(name="eta", value=0.98, unit="1"),),
+)  # fmt: skip
+
+
+def tilt_samples(truth) -> list[tuple[float, bytes]]:
+    sensor, part = DESIGN.sensor, SENSORS["mpu6050"]
     force = quantise(truth.specific_force_m_s2, part.m_s2_per_count(sensor))
     rate = quantise(truth.angular_rate_rad_s, part.rad_s_per_count(sensor))
-    own = python_module()
-    mav = own.MAVLink(None, srcSystem=1, srcComponent=1)
+    mav = python_module().MAVLink(None, srcSystem=1, srcComponent=1)
     frames = []
     for n, (t, f, w) in enumerate(zip(truth.time_s, force, rate, strict=True)):
         message = mav.tilt_sample_encode(
             round(t * 1e6), n, 0, 0, list(map(int, f)), list(map(int, w)), 0, 0, [0] * 6, 0
         )
         frames.append((t, message.pack(mav)))
-    path = tlog(tmp_path / "device.tlog", frames)
+        mav.seq = (mav.seq + 1) % 256
+    return frames
+
+
+def test_tilt_samples_need_the_design(tmp_path: Path, truth, bring) -> None:
+    path = tlog(tmp_path / "device.tlog", tilt_samples(truth))
     with pytest.raises(RecordingError, match="--design FILE"):
         bring(path)
-    design = FilterDesign(
-        filter="complementary", axes="both", tilt="atan2", mounting=Mounting(), rate_hz=100.0,
-        sensor=sensor, parameters=(Parameter(name="eta", value=0.98, unit="1"),),
-    )  # fmt: skip
-    save_design(design, tmp_path / "design.json")
+    save_design(DESIGN, tmp_path / "design.json")
     close(bring(path, design=tmp_path / "design.json").recording, truth, 1e-9, 1e-9)
+
+
+def other_attitudes(truth, tilt_of, system: int) -> list[tuple[float, bytes]]:
+    """ATTITUDE of an autopilot that has run for 50 s longer; some take 15 ms to arrive."""
+    mav = link(system=system)
+    roll, pitch = tilt_of(truth)
+    rows = list(zip(truth.time_s, roll, pitch, strict=True))[::2]
+    return [
+        (
+            t + (0.015 if n % 3 else 0.0),
+            mav.attitude_encode(round(t * 1e3) + 50_000, r, -p, 1.0, 0, 0, 0).pack(mav),
+        )
+        for n, (t, r, p) in enumerate(rows)
+    ]
+
+
+def test_attitude_of_another_system_is_a_reference(tmp_path, truth, bring, tilt_of) -> None:
+    save_design(DESIGN, tmp_path / "design.json")
+    frames = tilt_samples(truth) + other_attitudes(truth, tilt_of, 9)
+    imported = bring(tlog(tmp_path / "a.tlog", frames), design=tmp_path / "design.json")
+    close(imported.recording, truth, 1e-9, 1e-9)
+    assert tilted(imported.recording, truth) < 2e-3
+    assert any("ATTITUDE of system 9" in said for said in imported.guessed)
+    frames += other_attitudes(truth, tilt_of, 10)
+    imported = bring(tlog(tmp_path / "b.tlog", frames), design=tmp_path / "design.json")
+    assert imported.recording.up_reference is None
+    assert any("systems 9, 10" in said for said in imported.guessed)
+
+
+def test_such_a_log_can_be_diagnosed_and_tuned_on(tmp_path, truth, tilt_of, capsys) -> None:
+    save_design(DESIGN, tmp_path / "design.json")
+    frames = tilt_samples(truth) + other_attitudes(truth, tilt_of, 9)
+    path, recording = str(tlog(tmp_path / "a.tlog", frames)), str(tmp_path / "a.csv")
+    assert run(["import", path, "--design", str(tmp_path / "design.json"), "-o", recording]) == 0
+    assert run(["diagnose", recording]) == 0
+    assert run(["tune", recording, "-o", str(tmp_path / "tuned.json")]) == 0
+    assert "ATTITUDE of system 9" in capsys.readouterr().err
 
 
 def test_tlog_without_an_imu(tmp_path: Path, truth, bring, tilt_of) -> None:

@@ -228,6 +228,28 @@ def test_a_gap_that_a_message_without_time_tells_of_is_a_loss() -> None:
     assert (got.restarts, got.lost) == (0, 10)
 
 
+def heartbeats(count: int, first: int = 0, *, boot: bool = False) -> list[bytes]:
+    """Messages without a time; the first may say that the sender is starting."""
+    mav = M.MAVLink(None, 1, 1)
+    frames = []
+    for k in range(count):
+        mav.seq = (first + k) % 256
+        state = 1 if boot and k == 0 else 4
+        frames.append(bytes(M.MAVLink_heartbeat_message(0, 0, 0, 0, state, 3).pack(mav)))
+    return frames
+
+
+@pytest.mark.parametrize("kept", [40, 100, 200, 255, 300])
+def test_a_sender_without_times_says_boot_when_it_starts(kept: int) -> None:
+    got = counted(*heartbeats(kept, boot=True), *heartbeats(20, boot=True))
+    assert (got.restarts, got.lost) == (1, 0)
+
+
+def test_an_old_gap_stays_a_loss_when_the_sender_starts_later() -> None:
+    got = counted(*heartbeats(50), *heartbeats(60, first=60), *heartbeats(5, boot=True))
+    assert (got.restarts, got.lost) == (1, 10)
+
+
 def test_a_clock_of_32_bits_may_start_over() -> None:
     mav = M.MAVLink(None, 1, 1)
     frames = []

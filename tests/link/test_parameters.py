@@ -302,21 +302,6 @@ def test_an_answer_without_a_number_keeps_the_number() -> None:
     assert bench.client.entries["FILT_TAU"].value == 3.0
 
 
-def test_facts_are_the_firmware_s(host_folder) -> None:
-    """The table here has the names, and the values that a device tells of its own design."""
-    from boards import stimulus
-    from ground import Ground, values
-
-    ground = Ground()
-    ground.list(0.5)
-    told = dict(values(ground.run(host_folder, stimulus(150))))
-    facts = parameter_facts(design())
-    assert set(facts) == set(told)
-    of_filter = {n: f.design_value for n, f in facts.items() if f.design_value is not None}
-    assert of_filter == {n: told[n] for n in of_filter}
-    assert set(told) - set(of_filter) == {"SYS_ID", "CAL_START"}
-
-
 NAMES = st.sampled_from(["SYS_ID", "FILT_TAU", "X", "", "A B", "Y" * 16])
 TOLD = st.tuples(NAMES, st.floats(width=32), st.integers(0, 65535), st.integers(0, 65535))
 

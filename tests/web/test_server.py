@@ -6,9 +6,11 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
 from fake_session import FakeControls, FakeReports, Feed, batch, snapshot
 from served import running
@@ -127,6 +129,7 @@ def test_a_stuck_page_holds_up_nobody(tmp_path: Path, monkeypatch: pytest.Monkey
             s.stop()
             assert time.monotonic() - begun_s < STOP_S
             assert listener.ended()
+            until(lambda: not s._thread.is_alive())
         assert connection.fileno() > 0
 
 
@@ -169,10 +172,12 @@ def test_stop_is_quick_and_may_come_twice_or_before_start(tmp_path: Path) -> Non
     idle.stop()
     with running(tmp_path) as (s, client), Listener(client) as listener:
         listener.wait(lambda events: bool(events))
+        s.take_batch(batch(0, 5))
         begun_s = time.monotonic()
         s.stop()
         assert time.monotonic() - begun_s < STOP_S
         assert listener.ended()
+        assert len(times(listener.events)) == 5
         with pytest.raises(httpx.ConnectError):
             client.get("/api/session")
         s.stop()
@@ -186,6 +191,15 @@ def test_what_was_taken_before_the_end_is_still_sent(tmp_path: Path) -> None:
         assert listener.ended()
         assert [event.kind for event in listener.events[-3:]] == ["samples", "snapshot", "end"]
         assert client.get("/report.json").status_code == 200
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_failure_of_the_stream_is_no_silent_page(tmp_path: Path) -> None:
+    with running(tmp_path) as (s, client), Listener(client) as listener:
+        listener.wait(lambda events: bool(events))
+        s.take_batch(replace(batch(0, 3), device_rad=np.zeros((3, 0))))
+        assert listener.ended()
+        until(lambda: not s._thread.is_alive())
 
 
 def test_busy_port_is_told(tmp_path: Path) -> None:
@@ -357,6 +371,7 @@ def test_half_requests_are_let_go_while_others_are_served(
 
 def test_number_of_connections_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(protocol, "MOST_CONNECTIONS", 5)
+    monkeypatch.setattr(protocol, "REQUEST_S", 6.0 * WAIT_S)
     with running(tmp_path) as (s, _):
         opened = [socket.create_connection(("127.0.0.1", s.port)) for _ in range(5)]
         assert closed(opened[-1])
@@ -383,8 +398,12 @@ def test_a_body_that_never_comes_holds_up_nobody(
 
 
 PRINTING = """
-import sys, threading, pathlib
+import logging, pathlib, sys
 import httpx
+if len(sys.argv) > 3:
+    logging.basicConfig(level=logging.DEBUG)
+    for name in ("httpx", "httpcore"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
 sys.path.insert(0, sys.argv[1])
 from served import running
 with running(pathlib.Path(sys.argv[2])) as (server, client):
@@ -394,16 +413,20 @@ print(*secrets)
 """
 
 
-def test_nothing_is_printed_and_no_secret_is_logged(tmp_path: Path) -> None:
+@pytest.mark.parametrize("logged", [False, True])
+def test_no_secret_is_logged_and_nothing_printed(tmp_path: Path, logged: bool) -> None:
+    folder = str(Path(__file__).parent)
     done = subprocess.run(
-        [sys.executable, "-c", PRINTING, str(Path(__file__).parent), str(tmp_path)],
+        [sys.executable, "-c", PRINTING, folder, str(tmp_path), *(["log"] if logged else [])],
         capture_output=True,
         text=True,
         timeout=60,
         check=True,
     )
-    assert done.stderr == ""
-    assert len(done.stdout.split()) == 3
+    secrets = done.stdout.split()
+    assert len(secrets) == 3
+    assert not any(secret in done.stderr for secret in secrets)
+    assert logged or done.stderr == ""
 
 
 def test_no_thread_is_left(tmp_path: Path) -> None:
@@ -415,4 +438,5 @@ def test_no_thread_is_left(tmp_path: Path) -> None:
 def test_kernel_holds_little_for_a_page_that_does_not_read(tmp_path: Path) -> None:
     with running(tmp_path) as (s, _):
         held = s._socket.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
-        assert held <= 2 * binding.SEND_BUFFER_BYTES
+        # Linux doubles what was asked for.
+        assert held in (binding.SEND_BUFFER_BYTES, 2 * binding.SEND_BUFFER_BYTES)

@@ -171,12 +171,12 @@ async def test_only_the_latest_snapshot_is_sent() -> None:
 @on_a_loop
 async def test_a_new_client_gets_the_state_and_what_was() -> None:
     h = hub()
-    h.take_snapshot(snapshot(elapsed_s=5.0))
+    h.take_snapshot(snapshot(elapsed_s=5.0, missed_batches=3))
     h.take_batch(batch(10, 10))
     client = h.join()
     kept = h.history.batches()
     (state,) = of_text(await client.next())
-    assert state.data["elapsed_s"] == 5.0
+    assert (state.data["elapsed_s"], state.data["missed_batches"]) == (5.0, 3)
     assert [len(b) for b in kept] == [10]
     h.take_batch(batch(20, 10))
     h.flush()

@@ -4,6 +4,11 @@ import { BREAK, MISMATCH } from "./store.js";
 
 const DENSE = 2; // samples per pixel from which on it is worth it
 
+/** Whether an angle goes from one end of its range to the other; no line belongs there. */
+function wraps(store, before, at) {
+  return store.columns.some((column) => Math.abs(column[at] - column[before]) > 180);
+}
+
 /** Rows to draw, in arrays that are used again for every picture. */
 export class Rows {
   constructor(columns) {
@@ -29,11 +34,13 @@ export class Rows {
   }
 
   every(store, first, end) {
+    let before = -1;
     for (let index = first; index < end; index++) {
       const at = store.slot(index);
       const x = store.x[at];
-      if (store.flags[at] & BREAK) this.gap(x);
+      if (store.flags[at] & BREAK || (before >= 0 && wraps(store, before, at))) this.gap(x);
       if (store.flags[at] & MISMATCH) this.mismatches.push(x);
+      before = at;
       this.x.push(x);
       for (let c = 0; c < this.lines.length; c++) {
         const value = store.columns[c][at];

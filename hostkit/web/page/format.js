@@ -6,7 +6,9 @@ const known = (value) => typeof value === "number" && Number.isFinite(value);
 const signed = (said) => said.replace("-", MINUS);
 
 export function fixed(value, digits) {
-  return known(value) ? signed(value.toFixed(digits)) : DASH;
+  if (!known(value)) return DASH;
+  const said = value.toFixed(digits);
+  return Number(said) === 0 ? said.replace("-", "") : signed(said);
 }
 
 /** An angle with a sign always, so that digits do not jump. */
@@ -27,7 +29,8 @@ export function figure(value, digits = 4) {
 export function degrees(value) {
   if (!known(value)) return DASH;
   const size = Math.abs(value);
-  return signed(value.toFixed(size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.1 ? 3 : 4));
+  const digits = size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.1 ? 3 : size >= 0.001 ? 4 : 5;
+  return fixed(value, digits);
 }
 
 export function count(value) {

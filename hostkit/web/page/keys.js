@@ -2,7 +2,7 @@
 
 import { byId } from "./dom.js";
 
-const OWN_KEYS = "input, select, textarea, button, a, dialog, .scroll, .reasons";
+const OWN_KEYS = "input, select, textarea, button, a, dialog, .scroll";
 
 export function startKeys(view) {
   const help = byId("keys");

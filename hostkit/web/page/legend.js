@@ -1,26 +1,29 @@
-// Which line is which, and what it says under the pointer.
+// Which line is which, and what the samples under the pointer are.
 
 import { byId, element, text } from "./dom.js";
-import { angle } from "./format.js";
+import { angle, degrees, fixed } from "./format.js";
 
 export class Legend {
   constructor(axes) {
-    this.entries = axes.map((axis) => ({ axis, value: this.entry(axis, axis) }));
+    this.axes = axes;
+    this.readout = byId("readout");
+    for (const axis of axes) this.entry(axis, axis);
     this.entry("dashed", "model");
   }
 
   entry(swatch, said) {
     const line = element("li");
-    const value = element("span", { className: "value" });
-    line.append(element("i", { className: `swatch ${swatch}` }), element("span", { said }), value);
+    line.append(element("i", { className: `swatch ${swatch}` }), element("span", { said }));
     byId("legend").append(line);
-    return value;
   }
 
-  show(sample) {
-    for (const { axis, value } of this.entries) {
-      const { device, model } = sample?.[axis] ?? {};
-      text(value, sample ? `${angle(device)}° (${angle(model)}°)` : "");
-    }
+  show(sample, time) {
+    this.readout.hidden = !sample;
+    if (!sample) return;
+    const parts = this.axes.map((axis) => {
+      const { device, residual } = sample[axis];
+      return `${axis} ${angle(device)}°, residual ${degrees(residual)}°`;
+    });
+    text(this.readout, [`${fixed(time, 3)} s`, ...parts].join(" · "));
   }
 }

@@ -63,7 +63,7 @@ class Page {
       store: this.store,
       view: this.view,
       boxes: { angle: byId("angle-chart"), residual: byId("residual-chart") },
-      cursor: (sample) => this.legend.show(sample),
+      cursor: (sample) => this.legend.show(sample, this.store.timeAt(sample?.x)),
       drawn: () => this.drawn(),
     });
   }

@@ -62,7 +62,7 @@ export class Tau {
     if (!this.dirty && !busy && parameter.wanted === null) this.fill(parameter.value);
     const design = differs(parameter) ? ` · design ${figure(parameter.design_value)} s` : "";
     const used = byId("tau-used");
-    text(used, `in use τ ${figure(parameter.value, 5)} s · η ${figure(this.etaOf(parameter.value), 6)}` +
+    text(used, `in use τ ${figure(parameter.value, 5)} s · η ${figure(this.etaOf(parameter.value), 4)}` +
       ` · ${figure(1 / (2 * Math.PI * parameter.value), 3)} Hz${design}`);
     used.classList.toggle("warn", Boolean(design));
     const { said, failed } = outcome(parameter);

@@ -46,11 +46,14 @@ function showVerdict(verdict, reasons) {
   byId("verdict-box").dataset.verdict = verdict;
   const title = `${said} · hostkit monitor`;
   if (document.title !== title) document.title = title;
+  const place = reasons.length > 1 ? `(1 of ${reasons.length}) ` : "";
+  const first = byId("reason");
+  text(first, place + (reasons[0] ?? why(verdict)));
+  first.title = reasons.join("\n");
   const list = byId("reasons");
-  const shown = reasons.length ? reasons : [why(verdict)];
-  if (list.dataset.shown === JSON.stringify(shown)) return;
-  list.dataset.shown = JSON.stringify(shown);
-  list.replaceChildren(...shown.map((reason) => element("li", { said: reason, title: reason })));
+  if (list.dataset.shown === JSON.stringify(reasons)) return;
+  list.dataset.shown = JSON.stringify(reasons);
+  list.replaceChildren(...reasons.map((reason) => element("li", { said: reason })));
 }
 
 function why(verdict) {

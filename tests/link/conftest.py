@@ -1,3 +1,0 @@
-from boards import host_folder
-
-__all__ = ["host_folder"]
