@@ -37,15 +37,15 @@ class LiveDevice:
 
 
 @contextlib.contextmanager
-def live_device(rate_hz: float) -> Iterator[LiveDevice]:
-    """Serve the host firmware, which sends three messages with every sample."""
+def live_device(rate_hz: float, messages: tuple[str, ...] = MESSAGES) -> Iterator[LiveDevice]:
+    """Serve the host firmware, which sends so many messages with every sample."""
     with tempfile.TemporaryDirectory(prefix="hostkit-bench-") as text:
         folder = Path(text)
         _write_inputs(folder, rate_hz)
         command = [*hostkit("emulate", str(folder / "design.json")), "--target", "host", "--pty"]
         command += ["--recording", str(folder / "sweep.csv"), "--baud", str(BAUD)]
         for name in MESSAGES:
-            command += ["--message", f"{name}={rate_hz:g}"]
+            command += ["--message", f"{name}={rate_hz if name in messages else 0:g}"]
         with running(command, stdout=subprocess.PIPE) as child:
             assert child.stdout is not None
             port = child.stdout.readline().decode().strip()

@@ -5,7 +5,7 @@ import statistics
 import subprocess
 from typing import TYPE_CHECKING
 
-from benchmarks.live_device import LiveDevice, cpu_seconds, hostkit, live_device, running
+from benchmarks.live_device import MESSAGES, LiveDevice, cpu_seconds, hostkit, live_device, running
 from benchmarks.table import MISSING, Table, figure
 from hostkit.errors import HostkitError
 
@@ -13,13 +13,15 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 CHROMIUM = "/usr/bin/chromium"
-RATES_HZ = (200.0, 1000.0)
+LOADS = ((200.0, MESSAGES), (1000.0, MESSAGES[:1]), (1000.0, MESSAGES))
+"""Sample rate, Hz, and what goes out with every sample."""
+
 SETTLED_MS, WATCHED_MS = 3000, 30_000
 SEEN = "[window.hostkit.frames, window.hostkit.samples]"
 LATE = "Array.from(window.hostkit.latencyMs)"
 LATENCY = "fetch('/report.json').then(r => r.json()).then(d => d.timing.latency?.median_ms ?? NaN)"
 COLUMNS = (
-    "rate, Hz",
+    "samples/s x messages",
     "sample to session, median, ms",
     "session to drawn, median, ms",
     "95 %, ms",
@@ -36,7 +38,7 @@ def page_table() -> Table:
     return Table(
         title=f"Page: {WATCHED_MS / 1e3:g} s, headless Chromium that draws without a GPU",
         columns=COLUMNS,
-        rows=tuple(_row(rate_hz) for rate_hz in RATES_HZ),
+        rows=tuple(_row(rate_hz, messages) for rate_hz, messages in LOADS),
         remarks=(
             "Late is the newest sample of a picture; the server process also receives, judges "
             "and counts. Samples drawn are those of the time over those the rate asks for.",
@@ -44,9 +46,10 @@ def page_table() -> Table:
     )
 
 
-def _row(rate_hz: float) -> tuple[str, ...]:
+def _row(rate_hz: float, messages: tuple[str, ...]) -> tuple[str, ...]:
     """Measure the page at one rate; a row of dashes where there is no browser."""
-    missing = (f"{rate_hz:g}", *(MISSING,) * (len(COLUMNS) - 1))
+    name = f"{rate_hz:g} x {len(messages)}"
+    missing = (name, *(MISSING,) * (len(COLUMNS) - 1))
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
@@ -56,8 +59,8 @@ def _row(rate_hz: float) -> tuple[str, ...]:
             browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         except Error:
             return missing
-        with live_device(rate_hz) as device:
-            return (f"{rate_hz:g}", *_figures(browser, device, rate_hz))
+        with live_device(rate_hz, messages) as device:
+            return (name, *_figures(browser, device, rate_hz))
 
 
 def _figures(browser: "Browser", device: LiveDevice, rate_hz: float) -> tuple[str, ...]:
