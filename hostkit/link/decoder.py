@@ -32,9 +32,11 @@ class Frame:
         Its number, 0 to 255.
     repeated
         Whether it is a copy of one that came before.
+    received_ns
+        When its last bytes came, ns of a clock of the host that only rises; 0 if nobody said.
     """
 
-    __slots__ = ("_message", "name", "raw", "repeated", "sequence", "source")
+    __slots__ = ("_message", "name", "raw", "received_ns", "repeated", "sequence", "source")
 
     def __init__(
         self,
@@ -44,7 +46,9 @@ class Frame:
         raw: bytes,
         sequence: int,
         repeated: bool = False,
+        received_ns: int = 0,
     ) -> None:
+        self.received_ns = received_ns
         self.source = source
         self.name = name
         self._message = message
@@ -86,10 +90,15 @@ class Decoder:
         self._sequences = SequenceAccount()
         self._signatures = None if signing is None else SignatureCheck(signing)
 
-    def feed(self, data: bytes) -> list[Frame]:
+    def feed(self, data: bytes, received_ns: int = 0) -> list[Frame]:
         """Return the messages that `data` completes; it may be any bytes at all.
 
         Copies of a frame are returned too, and say so.
+
+        Parameters
+        ----------
+        received_ns
+            When the bytes came; every frame gets it.
         """
         found = self._framer.feed(data)
         if self._signatures is not None:
@@ -98,7 +107,8 @@ class Decoder:
         frames = []
         for name, raw in found:
             source, sequence = (raw[SYSTEM_AT], raw[COMPONENT_AT]), raw[SEQUENCE_AT]
-            frames.append(Frame(source, name, None, raw, sequence, take(source, sequence, raw)))
+            repeated = take(source, sequence, raw)
+            frames.append(Frame(source, name, None, raw, sequence, repeated, received_ns))
         return frames
 
     def begin_epoch(self) -> None:

@@ -13,6 +13,7 @@ from hostkit.errors import DeviceError
 from hostkit.link.boards import board_of
 from hostkit.link.port_use import Access, access_of, user_of
 
+PTY_FOLDER = "/dev/pts/"
 USB_ID = re.compile(r"([0-9a-f]{4}):([0-9a-f]{4})", re.IGNORECASE)
 
 
@@ -83,7 +84,7 @@ def port_info(device: str) -> PortInfo:
     for port in list_ports():
         if _is_one(port.device, device):
             return replace(port, device=device)
-    is_pty = os.path.realpath(device).startswith("/dev/pts/")
+    is_pty = os.path.realpath(device).startswith(PTY_FOLDER)
     return PortInfo(device=device, description="pseudo-terminal" if is_pty else "")
 
 
@@ -175,6 +176,7 @@ class PortFinder:
         self._asked = port
         self._listing = listing
         self._known: PortInfo | None = None
+        self._pty: tuple[int, int] | None = None
         self.device = ""
 
     def find(self) -> str:
@@ -191,9 +193,27 @@ class PortFinder:
         if self._known is None or self._known.vid is None:
             self.device = pick_port(self._asked, self._listing)
             self._known = None if "://" in self.device else self._info_of(self.device)
+            self._require_same_pty()
         else:
             self.device = self._again(self._known)
         return self.device
+
+    def _require_same_pty(self) -> None:
+        """Refuse a pseudo-terminal that only has the number of the one that is gone.
+
+        Numbers are given out again at once, so the new one is somebody else's. Behind a link it
+        is what its owner has put there.
+        """
+        if not self.device.startswith(PTY_FOLDER) or Path(self.device).is_symlink():
+            return
+        try:
+            made = Path(self.device).stat()
+        except OSError:
+            return
+        identity = (made.st_rdev, made.st_ctime_ns)
+        if self._pty not in (None, identity):
+            raise DeviceError(f"{self.device} is gone; the one of its name now is another's")
+        self._pty = identity
 
     def _info_of(self, device: str) -> PortInfo | None:
         return next((p for p in self._listing() if _is_one(p.device, device)), None)

@@ -2,8 +2,10 @@
 
 import contextlib
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
 from hostkit.link.port import PortState
@@ -11,7 +13,9 @@ from hostkit.link.reconnect import Reconnecting
 
 QUEUE_BYTES = 8 << 20
 BATCH_S = 0.02
-"""A thread that wakes for every frame at 1 kHz costs more than what it reads."""
+"""Decoder and models cost less for many samples at once than for each by itself."""
+REST_S = 0.001
+"""Between two reads; so finely it is known when something came."""
 BATCH_BYTES = 2048
 """More than this at once means that more is waiting, where a serial port keeps 4096 bytes."""
 READ_S = 0.05
@@ -20,12 +24,29 @@ ORDER_S = 5.0
 JOIN_S = 2.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arrival:
+    """When some bytes came, ns of the monotonic clock, and where they end in their batch."""
+
+    end: int
+    received_ns: int
+
+
+@dataclass(slots=True)
+class _Batch:
+    """Bytes of one epoch that nobody has taken yet."""
+
+    epoch: int
+    data: bytearray = field(default_factory=bytearray)
+    arrivals: list[Arrival] = field(default_factory=list)
+
+
 class Pump:
     """Reads a port in a thread of its own into a bounded queue.
 
     The queue holds 8 MiB. When it is full the newest bytes are dropped and counted in
-    `overrun_bytes`; those that are in it stay in order. While less than 2 KiB comes at once, it is
-    handed over at most every 20 ms.
+    `overrun_bytes`; those that are in it stay in order. While less than 2 KiB waits, it is handed
+    over at most every 20 ms, and says when each of its pieces came.
 
     Attributes
     ----------
@@ -33,6 +54,8 @@ class Pump:
         Of the port, now.
     epoch
         Of the bytes that were last read: a batch never holds bytes of two epochs.
+    arrivals
+        When the pieces of the bytes came that were last read.
     reason
         Why the port cannot be opened again; empty while it is open.
 
@@ -54,7 +77,7 @@ class Pump:
         self._port = port
         self._limit = queue_bytes
         self._batch_s = batch_s
-        self._queue: deque[tuple[int, bytearray]] = deque()
+        self._queue: deque[_Batch] = deque()
         self._queued_bytes = 0
         self._changed = threading.Condition()
         self._stop = threading.Event()
@@ -62,7 +85,9 @@ class Pump:
         self._ended = False
         self._failure: BaseException | None = None
         self._companions = contextlib.ExitStack()
+        self._taken_s = 0.0
         self.epoch = port.epoch
+        self.arrivals: tuple[Arrival, ...] = ()
         self.overrun_bytes = 0
         self._thread = threading.Thread(target=self._run, name="hostkit pump", daemon=True)
         self._thread.start()
@@ -86,16 +111,29 @@ class Pump:
             If the thread failed; what it had read before has been returned by then.
         """
         with self._changed:
-            if not self._queue and not self._ended:
-                self._changed.wait(timeout_s)
+            self._await_batch(timeout_s)
+            self.arrivals = ()
             if self._queue:
-                self.epoch, data = self._queue.popleft()
-                self._queued_bytes -= len(data)
-                return bytes(data)
+                batch = self._queue.popleft()
+                self._queued_bytes -= len(batch.data)
+                self._taken_s = time.monotonic()
+                self.epoch, self.arrivals = batch.epoch, tuple(batch.arrivals)
+                return bytes(batch.data)
             if self._failure is not None:
                 raise DeviceError(f"reading the port failed: {self._failure}") from self._failure
             self.epoch = self._port.epoch
             return None if self._ended else b""
+
+    def _await_batch(self, timeout_s: float) -> None:
+        """Wait for bytes, and for more of them while the last batch was taken a moment ago."""
+        if not self._queue and not self._ended:
+            self._changed.wait_for(lambda: self._queue or self._ended, timeout_s)
+        left_s = self._taken_s + self._batch_s - time.monotonic()
+        if self._queue and left_s > 0.0:
+            self._changed.wait_for(
+                lambda: self._queued_bytes >= BATCH_BYTES or self._ended,
+                min(left_s, timeout_s),
+            )
 
     def write(self, data: bytes) -> None:
         """Send to the device, from any thread; what cannot be sent at once is lost."""
@@ -152,7 +190,7 @@ class Pump:
                     break
                 self._put(data)
                 if 0 < len(data) < BATCH_BYTES:
-                    self._stop.wait(self._batch_s)
+                    time.sleep(REST_S)
         except BaseException as error:  # told to the reader, who would otherwise wait for ever
             self._failure = error
         finally:
@@ -190,7 +228,8 @@ class Pump:
     def _append(self, epoch: int, data: bytes) -> None:
         """Put bytes behind those of the same epoch; many small pieces would cost memory."""
         self._queued_bytes += len(data)
-        if self._queue and self._queue[-1][0] == epoch:
-            self._queue[-1][1].extend(data)
-        else:
-            self._queue.append((epoch, bytearray(data)))
+        if not self._queue or self._queue[-1].epoch != epoch:
+            self._queue.append(_Batch(epoch))
+        batch = self._queue[-1]
+        batch.data.extend(data)
+        batch.arrivals.append(Arrival(end=len(batch.data), received_ns=time.monotonic_ns()))

@@ -182,28 +182,33 @@ class TimeSync:
         drift = 0.0 if self._clock_ppm is None else self._clock_ppm * 1e-6
         return self._best.offset_ns + round(drift * (host_ns - self._best.host_ns))
 
-    def arrived(self, time_us: NDArray[np.int64], received_ns: int) -> None:
-        """Take the times of samples that came together at one moment.
+    def arrived(self, time_us: NDArray[np.int64], received_ns: NDArray[np.int64]) -> None:
+        """Take the times of samples and of their arrivals, both rising.
 
-        Jitter is that of the newest of them against the newest of those that came before.
+        Of samples that came together the newest counts for the jitter: it is held against the
+        newest of those that came together before.
 
         Parameters
         ----------
         time_us
             Device time of each, shape ``(N,)``; a counter of 32 bits may wrap.
+        received_ns
+            Host time of each, same shape.
         """
         if not len(time_us):
             return
-        offset_ns = self._offset_ns(received_ns)
+        offset_ns = self._offset_ns(int(received_ns[-1]))
         if offset_ns is not None:
-            device_us = (received_ns + offset_ns) // NS_PER_US
+            device_us = (received_ns + offset_ns % (WRAP_US * NS_PER_US)) // NS_PER_US
             self._latency.add(_behind_us(device_us, time_us) / 1e3)
-        newest_us = int(time_us[-1])
+        newest = newest_of_each(received_ns)
+        device_us, host_ns = time_us[newest] % WRAP_US, received_ns[newest]
         if self._last_arrival is not None:
-            last_us, last_ns = self._last_arrival
-            device_ns = float(_behind_us(newest_us, np.array([last_us]))[0]) * NS_PER_US
-            self._jitter.add(abs(received_ns - last_ns - device_ns) / NS_PER_MS)
-        self._last_arrival = (newest_us, received_ns)
+            device_us = np.append(self._last_arrival[0], device_us)
+            host_ns = np.append(self._last_arrival[1], host_ns)
+        step_ns = _behind_us(device_us[1:], device_us[:-1]) * NS_PER_US
+        self._jitter.add(np.abs(np.diff(host_ns) - step_ns) / NS_PER_MS)
+        self._last_arrival = (int(device_us[-1]), int(host_ns[-1]))
 
     def statistics(self) -> TimingStatistics:
         """Return the figures so far."""
@@ -216,8 +221,13 @@ class TimeSync:
         )
 
 
-def _behind_us(now_us: int, time_us: NDArray[np.int64]) -> Vector:
-    """Return how far times are behind a moment, as if both were counters of 32 bits."""
+def newest_of_each(received_ns: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Return the places of the last of those that came together."""
+    return np.flatnonzero(np.append(np.diff(received_ns) != 0, True))
+
+
+def _behind_us(now_us: NDArray[np.int64], time_us: NDArray[np.int64]) -> Vector:
+    """Return how far times are behind others, as if all were counters of 32 bits."""
     low = np.asarray(time_us, dtype=np.int64) % WRAP_US
     behind: Vector = ((now_us % WRAP_US - low + WRAP_US // 2) % WRAP_US - WRAP_US // 2).astype(
         np.float64

@@ -73,7 +73,7 @@ def read(stream: bytes, chunk: int, key: SigningKey | None = None) -> list[Frame
         for frame in frames:
             look_at(frame, sync)
         trace = trace_of(frames, ("roll", "pitch"), hidden_words=2)
-        sync.arrived(trace.time_us, 10**9 + i)
+        sync.arrived(trace.time_us, np.full(len(trace), 10**9 + i))
         got += frames
     counted = decoder.statistics()
     assert counted.received_bytes == len(stream)

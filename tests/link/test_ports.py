@@ -193,3 +193,20 @@ def test_access_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(os, "access", lambda *_: False)
     assert access_of(str(port)) == "forbidden"
     assert access_of("COM3") == "unknown"
+
+
+def test_a_pseudo_terminal_of_the_same_number_is_anothers(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(ports, "PTY_FOLDER", f"{tmp_path}/")
+    pty, link = tmp_path / "4", tmp_path / "link"
+    pty.touch()
+    link.symlink_to(pty)
+    direct, through_link = PortFinder(str(pty)), PortFinder(str(link))
+    assert direct.find() == direct.find() == str(pty)
+    through_link.find()
+    made = pty.stat().st_ctime_ns
+    while pty.stat().st_ctime_ns == made:  # the clock of a file system ticks slowly
+        pty.unlink()
+        pty.touch()
+    with pytest.raises(DeviceError, match="another's"):
+        direct.find()
+    assert through_link.find() == str(link)

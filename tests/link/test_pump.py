@@ -170,16 +170,36 @@ def test_close_ends_the_thread_quickly_and_calls_what_was_asked() -> None:
     pump.close()
 
 
-def test_small_pieces_wait_for_each_other() -> None:
-    port, begin_s = FakeTransport(*numbered(20, 100)), time.monotonic()
+def test_small_pieces_are_handed_over_together() -> None:
+    chunks = numbered(20, 100)
+    pump = pump_of(FakeTransport(chunks[0]))
+    assert pump.read(5.0) == chunks[0]
+    taken_s = pump._taken_s
+    pump._port._inner.chunks += chunks[1:4]
+    assert pump.read(5.0) == b"".join(chunks[1:4])
+    assert pump._taken_s - taken_s >= 0.02
+    pump.close()
+
+
+def test_each_piece_has_its_time() -> None:
+    port = FakeTransport(b"one", b"three")
+    before_ns = time.monotonic_ns()
     pump = pump_of(port)
-    wait_until(lambda: not port.chunks)
-    assert time.monotonic() - begin_s >= 19 * 0.02
+    wait_until(lambda: pump._queued_bytes == 8)
+    assert pump.read(1.0) == b"onethree"
+    first, second = pump.arrivals
+    assert (first.end, second.end) == (3, 8)
+    assert before_ns < first.received_ns <= second.received_ns - 1_000_000
+    assert second.received_ns < time.monotonic_ns()
+    assert pump.read(0.0) == b""
+    assert pump.arrivals == ()
     pump.close()
 
 
 def test_large_pieces_wait_for_nothing() -> None:
     port = FakeTransport(*numbered(20, 4000))
     pump = pump_of(port, batch_s=1000.0)
-    wait_until(lambda: not port.chunks)
+    got = 0
+    while got < 20 * 4000:
+        got += len(pump.read(5.0) or b"")
     pump.close()

@@ -52,9 +52,14 @@ class Bench:
             self.samples.append(time_us)
             if len(self.samples) == self.batch:
                 received_ns = self.now_ns + self.delay()
-                self.sync.arrived(np.array(self.samples, dtype=np.int64), received_ns)
+                self.arrived(self.samples, received_ns)
                 self.samples.clear()
             self.now_ns += S // self.rate_hz
+
+    def arrived(self, time_us: list[int], received_ns: int) -> None:
+        """Samples that came together."""
+        times = np.array(time_us, dtype=np.int64)
+        self.sync.arrived(times, np.full(len(times), received_ns))
 
     def exchange(self) -> None:
         request = self.sync.poll()
@@ -218,7 +223,7 @@ def test_times_beyond_reason_break_nothing(tc1: int, time_us: int) -> None:
         request = bench.sync.poll()
         if request is not None:
             bench.sync.take(bench.frame(M.MAVLink_timesync_message(tc1, request.ts1)))
-        bench.sync.arrived(np.array([time_us, 0, time_us], dtype=np.int64), bench.now_ns)
+        bench.arrived(np.array([time_us, 0, time_us], dtype=np.int64), bench.now_ns)
         bench.now_ns += 20 * S
     figures = bench.sync.statistics()
     assert figures.latency is not None
@@ -231,12 +236,22 @@ def test_memory_is_bounded() -> None:
     for _ in range(2000):
         bench.sync.poll()
         bench.now_ns += S
-        bench.sync.arrived(np.arange(3 * SAMPLES, dtype=np.int64), bench.now_ns)
+        bench.arrived(np.arange(3 * SAMPLES, dtype=np.int64), bench.now_ns)
     assert len(bench.sync._open) <= 16
     assert bench.sync._jitter._values.size == SAMPLES
 
 
 def test_no_sample_is_no_arrival() -> None:
     bench = Bench()
-    bench.sync.arrived(np.array([], dtype=np.int64), 0)
+    bench.arrived([], 0)
     assert bench.sync.statistics().jitter is None
+
+
+def test_samples_with_arrivals_of_their_own_are_told_apart() -> None:
+    """Three samples 10 ms apart, of which the last came 4 ms late, and one that came with it."""
+    bench = Bench()
+    time_us = np.array([0, 10_000, 20_000, 21_000], dtype=np.int64)
+    bench.sync.arrived(time_us, np.array([0, 10, 24, 24]) * MS + S)
+    jitter = bench.sync.statistics().jitter
+    assert jitter.max_ms == pytest.approx(3.0)
+    assert jitter.median_ms == pytest.approx(1.5)
