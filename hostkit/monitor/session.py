@@ -1,7 +1,7 @@
 """A session: bytes from a port through decoder and models to views, recordings and a verdict."""
 
 from collections.abc import Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
@@ -122,13 +122,14 @@ class Session:
             If the session does not answer.
         """
         answer: Future[SessionResult] = Future()
-        self._inbox.put(lambda: answer.set_result(self._result()))
-        try:
-            return answer.result(0.0 if self._final is not None else RESULT_WAIT_S)
-        except TimeoutError:
-            if self._final is not None:
-                return self._final
-            raise DeviceError(f"the session did not answer within {RESULT_WAIT_S:g} s") from None
+        if self._final is None:
+            self._inbox.put(lambda: answer.set_result(self._result()))
+            wait((answer,), RESULT_WAIT_S)
+        if answer.done():
+            return answer.result()
+        if self._final is None:
+            raise DeviceError(f"the session did not answer within {RESULT_WAIT_S:g} s")
+        return self._final
 
     def run(self) -> SessionResult:
         """Look at the device until time is up, the stream ends, or another design is met.
