@@ -1,7 +1,7 @@
 """A session: bytes from a port through decoder and models to views, recordings and a verdict."""
 
 from collections.abc import Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
@@ -22,7 +22,7 @@ from hostkit.monitor.result import SessionResult
 from hostkit.monitor.silence import SilenceWatch
 from hostkit.monitor.snapshot import Controls, SessionInfo, Snapshot, View
 from hostkit.records import FilterDesign
-from hostkit.validation import Thresholds, Validator
+from hostkit.validation import Thresholds
 
 POLL_S = 0.1
 SNAPSHOT_EVERY_S = 0.25
@@ -58,7 +58,6 @@ class Session:
     views: list[View] = field(default_factory=list)
     outlets: Outlets = field(default_factory=Outlets)
     controls: Controls = field(init=False)
-    validator: Validator = field(init=False)
     _parts: Parts = field(init=False)
     _silence: SilenceWatch = field(init=False)
     _overlay: OverlayCollector = field(init=False)
@@ -85,7 +84,6 @@ class Session:
             recorders=(*own, *self.recorders),
             outlets=self.outlets,
         )
-        self.validator = parts.validator
         self._silence = SilenceWatch(
             self.transport,
             parts.receiver,
@@ -124,13 +122,14 @@ class Session:
             If the session does not answer.
         """
         answer: Future[SessionResult] = Future()
-        self._inbox.put(lambda: answer.set_result(self._result()))
-        try:
-            return answer.result(0.0 if self._final is not None else RESULT_WAIT_S)
-        except TimeoutError:
-            if self._final is not None:
-                return self._final
-            raise DeviceError(f"the session did not answer within {RESULT_WAIT_S:g} s") from None
+        if self._final is None:
+            self._inbox.put(lambda: answer.set_result(self._result()))
+            wait((answer,), RESULT_WAIT_S)
+        if answer.done():
+            return answer.result()
+        if self._final is None:
+            raise DeviceError(f"the session did not answer within {RESULT_WAIT_S:g} s")
+        return self._final
 
     def run(self) -> SessionResult:
         """Look at the device until time is up, the stream ends, or another design is met.
@@ -186,7 +185,7 @@ class Session:
         if received.ended:
             self._end_of_stream()
         if received.lost_some:
-            self.validator.doubt_parameters()
+            self._parts.validator.doubt_parameters()
         frames = received.frames
         parts.recordings.add(int(self.clock.time() * 1e6), frames)
         parts.outlets.send(frames)
@@ -247,7 +246,7 @@ class Session:
         conversation = self._parts.conversation
         for raw in self._parts.outlets.receive():
             conversation.pass_on(raw)
-        conversation.learn(self.validator.untold)
+        conversation.learn(self._parts.validator.untold)
         conversation.poll()
         if self.transport.live and self._parts.judge.source is not None:
             request = self._parts.timesync.poll()
@@ -264,18 +263,17 @@ class Session:
 
     def _position_s(self) -> float:
         """Return where on the time axis a new epoch begins."""
-        replay = self._parts.replay
-        if replay is not None:
-            return replay.chunk_begin_s
-        first = self._silence.first_s is None
-        return 0.0 if first or not self.transport.live else self._elapsed_s()
+        if self._parts.replay is not None:
+            return self._parts.replay.chunk_begin_s
+        known = self.transport.live and self._silence.first_s is not None
+        return self._elapsed_s() if known else 0.0
 
     def _elapsed_s(self) -> float:
         first_s = self._silence.first_s
         return self.clock.monotonic() - (self._begun_s if first_s is None else first_s)
 
     def _collect_anew(self) -> None:
-        self._overlay = OverlayCollector(len(self.validator.spec.axes))
+        self._overlay = OverlayCollector(len(self._parts.validator.spec.axes))
         self._jitter = JitterCollector()
 
     def _result(self) -> SessionResult:
@@ -290,7 +288,7 @@ class Session:
             device=parts.watches.status(parts.judge.source),
             reconnects=parts.receiver.reconnects,
             overlay=self._overlay.overlay(),
-            residual_histogram=self.validator.histograms(),
+            residual_histogram=self._parts.validator.histograms(),
             jitter_histogram=self._jitter.histogram(),
             notices=parts.notices.latest(),
         )
