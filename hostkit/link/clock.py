@@ -17,6 +17,16 @@ class Clock(Protocol):
         """Let time pass."""
 
 
+def now_ns(clock: Clock) -> int:
+    """Return nanoseconds that only rise; those of the machine are :func:`time.monotonic_ns`."""
+    return int(clock.monotonic() * 1e9)
+
+
+def epoch_us(clock: Clock) -> int:
+    """Return the time since 1970, us, at which :func:`now_ns` was 0."""
+    return int(clock.time() * 1e6) - now_ns(clock) // 1000
+
+
 class SystemClock:
     """The clock of the machine."""
 

@@ -128,18 +128,23 @@ class TlogWriter:
         """Bytes in the file."""
         return self._file.written_bytes
 
-    def add(self, time_us: int, frames: Sequence[Frame]) -> None:
-        """Append frames that were received at `time_us` microseconds since 1970."""
-        self._append(time_us, [frame.raw for frame in frames])
+    def add(self, epoch_us: int, frames: Sequence[Frame]) -> None:
+        """Append frames, each with its time.
+
+        Parameters
+        ----------
+        epoch_us
+            The time since 1970, us, at which the clock of their arrivals was 0.
+        """
+        self._append([(epoch_us + frame.received_ns // 1000, frame.raw) for frame in frames])
 
     def write(self, time_us: int, frame: bytes) -> None:
         """Append one frame."""
-        self._append(time_us, [frame])
+        self._append([(time_us, frame)])
 
-    def _append(self, time_us: int, frames: list[bytes]) -> None:
-        stamp = STAMP.pack(time_us)
+    def _append(self, frames: list[tuple[int, bytes]]) -> None:
         try:
-            self._file.append([stamp + frame for frame in frames])
+            self._file.append([STAMP.pack(time_us) + frame for time_us, frame in frames])
         except PartialWriteError as error:
             self.frames += error.kept
             raise

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from hostkit.link.clock import Clock
+from hostkit.link.clock import Clock, now_ns
 from hostkit.link.decoder import Decoder
 from hostkit.link.encoder import Encoder
 from hostkit.link.timesync import TimeSync
@@ -18,11 +18,6 @@ from hostkit.monitor.recordings import Recorder, Recordings
 from hostkit.monitor.sample_files import open_recorder
 from hostkit.records import FilterDesign
 from hostkit.validation import Thresholds, Validator
-
-
-def now_ns(clock: Clock) -> int:
-    """Return nanoseconds that only rise."""
-    return int(clock.monotonic() * 1e9)
 
 
 def assemble(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hostkit.errors import DeviceError
-from hostkit.link.clock import Clock, SystemClock
+from hostkit.link.clock import Clock, SystemClock, epoch_us
 from hostkit.link.decoder import Decoder
 from hostkit.link.signing import SigningKey
 from hostkit.link.statistics import LinkStatistics
@@ -113,7 +113,7 @@ class Capture:
 
     def _turn(self) -> None:
         received = self._receiver.receive(POLL_S)
-        self._recordings.add(int(self._clock.time() * 1e6), received.frames)
+        self._recordings.add(epoch_us(self._clock), received.frames)
         for frame in received.frames:
             self._watches.take(frame)
             self._samples += frame.name == "TILT_SAMPLE" and not frame.repeated

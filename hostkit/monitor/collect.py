@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.link.timesync import newest_of_each
 from hostkit.monitor.result import Overlay
 from hostkit.monitor.snapshot import Batch
 from hostkit.validation import Histogram, LogHistogram
@@ -81,14 +82,16 @@ class JitterCollector:
         self._sizes = LogHistogram(*JITTER_S)
         self._last: tuple[int, int] | None = None
 
-    def arrived(self, newest_time_us: int, received_ns: int) -> None:
-        """Take an arrival: device time of its newest sample, and the host's clock."""
+    def arrived(self, time_us: NDArray[np.int64], received_ns: NDArray[np.int64]) -> None:
+        """Take samples: their times on the device and those of their arrivals, shape ``(N,)``."""
+        newest = newest_of_each(received_ns)
+        device_us, host_ns = time_us[newest], received_ns[newest]
         if self._last is not None:
-            device_s = (newest_time_us - self._last[0]) * 1e-6
-            host_s = (received_ns - self._last[1]) * 1e-9
-            if device_s > 0.0:
-                self._sizes.add(np.array([abs(host_s - device_s)]))
-        self._last = newest_time_us, received_ns
+            device_us = np.append(self._last[0], device_us)
+            host_ns = np.append(self._last[1], host_ns)
+        device_s, host_s = np.diff(device_us) * 1e-6, np.diff(host_ns) * 1e-9
+        self._sizes.add(np.abs(host_s - device_s)[device_s > 0.0])
+        self._last = int(device_us[-1]), int(host_ns[-1])
 
     def begin_epoch(self) -> None:
         """Take the next arrival as the first."""

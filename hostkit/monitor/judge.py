@@ -29,14 +29,15 @@ class Stretch:
 
     Attributes
     ----------
-    time_us
-        Device time, shape ``(N,)``.
+    time_us, received_ns
+        Device time, and host time of arrival, shape ``(N,)``.
     anew
         Whether the device itself began anew with them.
     """
 
     batch: Batch
     time_us: NDArray[np.int64]
+    received_ns: NDArray[np.int64]
     anew: bool
 
 
@@ -116,14 +117,14 @@ class Judge:
         self._earlier = []
 
     def take(
-        self, frames: list[Frame], received_s: float, position_s: Callable[[], float]
+        self, frames: list[Frame], epoch_s: float, position_s: Callable[[], float]
     ) -> Iterator[Stretch]:
         """Judge the samples among some frames.
 
         Parameters
         ----------
-        received_s
-            Host time of arrival, s since 1970.
+        epoch_s
+            The time since 1970, s, at which the clock of the frames' arrivals was 0.
         position_s
             Where the time axis stands, s: what comes first in a new epoch is shown there.
         """
@@ -134,15 +135,15 @@ class Judge:
             elif frame.name != PARAMETER or frame.repeated:
                 continue
             elif frame.source == self.source:
-                yield from self._judge(run, received_s, position_s)
+                yield from self._judge(run, epoch_s, position_s)
                 run = []
                 self._told(frame)
             elif self.source is None and len(self._earlier) < MOST_EARLIER:
                 self._earlier.append(frame)
-        yield from self._judge(run, received_s, position_s)
+        yield from self._judge(run, epoch_s, position_s)
 
     def _judge(
-        self, run: list[Frame], received_s: float, position_s: Callable[[], float]
+        self, run: list[Frame], epoch_s: float, position_s: Callable[[], float]
     ) -> Iterator[Stretch]:
         if not run or self.refused:
             return
@@ -157,12 +158,19 @@ class Judge:
         if self._as_designed and self._is_retuned:
             self._validator.add(trace)
             return
+        came_ns = {t: f.received_ns for t, f in zip(trace.time_us.tolist(), run, strict=True)}
         judged = self._validator.add(trace)
         for part in _rising(judged.time_us):
-            yield self._stretch(judged, part, received_s, position_s)
+            received_ns = np.array([came_ns[t] for t in judged.time_us[part].tolist()])
+            yield self._stretch(judged, part, received_ns, epoch_s, position_s)
 
     def _stretch(
-        self, judged: Judged, part: slice, received_s: float, position_s: Callable[[], float]
+        self,
+        judged: Judged,
+        part: slice,
+        received_ns: NDArray[np.int64],
+        epoch_s: float,
+        position_s: Callable[[], float],
     ) -> Stretch:
         time_us = judged.time_us[part]
         first_us = int(time_us[0])
@@ -179,14 +187,14 @@ class Judge:
         self._newest_us, self._newest_s = int(time_us[-1]), float(time_s[-1])
         batch = Batch(
             time_s=time_s,
-            received_s=received_s,
+            received_s=epoch_s + float(received_ns[-1]) * 1e-9,
             device_rad=judged.device_rad[part],
             model_rad=judged.model_rad[part],
             residual_rad=judged.residual_rad[part],
             mismatch=judged.mismatch[part],
             begins=judged.begins[part],
         )
-        return Stretch(batch=batch, time_us=time_us, anew=anew)
+        return Stretch(batch=batch, time_us=time_us, received_ns=received_ns, anew=anew)
 
     def _told(self, frame: Frame) -> None:
         self._validator.told(str(frame.message.param_id), float(frame.message.param_value))

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, replace
 
-from hostkit.link.clock import Clock
+from hostkit.link.clock import Clock, now_ns
 from hostkit.link.decoder import Decoder, Frame
+from hostkit.link.pump import Pump
 from hostkit.link.statistics import LinkStatistics
 from hostkit.link.transport import Transport
 from hostkit.monitor.notices import Notices
@@ -66,11 +67,23 @@ class Receiver:
             self.decoder.begin_epoch()
         if not self._understood:
             self.heard = (self.heard + data)[-HEARD_BYTES:]
-        frames = self.decoder.feed(data)
+        frames = self._decode(data)
         self._understood = self._understood or bool(frames)
         before, self._lost_frames = self._lost_frames, self.decoder.lost_frames
         lost_some = self._lost_frames != before
         return Received(frames=frames, opened_anew=opened_anew, lost_some=lost_some)
+
+    def _decode(self, data: bytes) -> list[Frame]:
+        """Decode bytes piece by piece, where it is known when the pieces came."""
+        arrivals = self._transport.arrivals if isinstance(self._transport, Pump) else ()
+        if not arrivals:
+            return self.decoder.feed(data, now_ns(self._clock))
+        frames: list[Frame] = []
+        begin = 0
+        for arrival in arrivals:
+            frames += self.decoder.feed(data[begin : arrival.end], arrival.received_ns)
+            begin = arrival.end
+        return frames
 
     def _follow_port(self) -> bool:
         """Compare the port with what it was; tell whether it was opened anew."""

@@ -35,8 +35,8 @@ class Recorder(Protocol):
     def left(self) -> Path | None:
         """Where an unfinished recording of that name was moved; None if there was none."""
 
-    def add(self, time_us: int, frames: Sequence[Frame]) -> None:
-        """Keep some frames that came at a time, us since 1970."""
+    def add(self, epoch_us: int, frames: Sequence[Frame]) -> None:
+        """Keep some frames; the clock of their arrivals was 0 at `epoch_us`, us since 1970."""
 
     def close(self) -> None:
         """Finish the file."""
@@ -132,11 +132,11 @@ class Recordings:
         if self._close(recorder):
             self._notices.add("info", f"{recorder.name} is complete: {recorder.frames} frames")
 
-    def add(self, time_us: int, frames: Sequence[Frame]) -> None:
+    def add(self, epoch_us: int, frames: Sequence[Frame]) -> None:
         """Give frames to every recording."""
         for recorder in tuple(self._open) if frames else ():
             try:
-                recorder.add(time_us, frames)
+                recorder.add(epoch_us, frames)
             except HostkitError as error:
                 self._fail(recorder, error)
 

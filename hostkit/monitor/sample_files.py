@@ -96,9 +96,9 @@ class CsvRecorder:
         """Bytes in the file."""
         return self._file.written_bytes
 
-    def add(self, time_us: int, frames: Sequence[Frame]) -> None:
+    def add(self, epoch_us: int, frames: Sequence[Frame]) -> None:
         """Append the samples among some frames."""
-        rows = self._rows.take(time_us, frames)
+        rows = self._rows.take(epoch_us, frames)
         lines = [",".join(map(repr, row)) + VALID for row in rows.tolist()]
         if not lines:
             return

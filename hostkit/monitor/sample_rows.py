@@ -50,8 +50,13 @@ class SampleRows:
         self._host_us = 0
         self.left_out = 0
 
-    def take(self, host_us: int, frames: Sequence[Frame]) -> Vector:
+    def take(self, epoch_us: int, frames: Sequence[Frame]) -> Vector:
         """Return a row for each sample, its columns as in `COLUMNS`.
+
+        Parameters
+        ----------
+        epoch_us
+            The time since 1970, us, at which the clock of the frames' arrivals was 0.
 
         Raises
         ------
@@ -63,6 +68,7 @@ class SampleRows:
             return np.empty((0, len(COLUMNS)))
         read = payloads(good)
         self._require_design(good, read)
+        host_us = epoch_us + good[-1].received_ns // 1000
         times_us = [self._time_us(time_us, host_us) for time_us in read["time_usec"].tolist()]
         kept = np.array([time_us is not None for time_us in times_us], dtype=np.bool_)
         self.left_out += len(good) - int(kept.sum())

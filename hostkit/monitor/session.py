@@ -5,10 +5,10 @@ from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
-from hostkit.link.clock import Clock, SystemClock
+from hostkit.link.clock import Clock, SystemClock, epoch_us
 from hostkit.link.decoder import Decoder, Frame
 from hostkit.link.transport import Transport
-from hostkit.monitor.assembly import assemble, now_ns
+from hostkit.monitor.assembly import assemble
 from hostkit.monitor.collect import JitterCollector, OverlayCollector
 from hostkit.monitor.controls import SessionControls
 from hostkit.monitor.inbox import Inbox
@@ -179,7 +179,7 @@ class Session:
 
     def _take(self, received: Received) -> None:
         """Give what came to everybody."""
-        parts, received_ns = self._parts, now_ns(self.clock)
+        parts = self._parts
         if received.opened_anew:
             self._begin_epoch()
         if received.ended:
@@ -187,23 +187,23 @@ class Session:
         if received.lost_some:
             self._parts.validator.doubt_parameters()
         frames = received.frames
-        parts.recordings.add(int(self.clock.time() * 1e6), frames)
+        parts.recordings.add(epoch_us(self.clock), frames)
         parts.outlets.send(frames)
         for frame in frames:
             parts.watches.take(frame)
             if frame.name == "TIMESYNC":
-                parts.timesync.take(frame, received_ns)
+                parts.timesync.take(frame, frame.received_ns)
             elif frame.name not in ("TILT_SAMPLE", "ATTITUDE"):
                 parts.conversation.take(frame)
-        heard = self._judge(frames, received_ns)
+        heard = self._judge(frames)
         self._silence.look(heard=heard, samples=parts.judge.samples)
 
-    def _judge(self, frames: list[Frame], received_ns: int) -> bool:
+    def _judge(self, frames: list[Frame]) -> bool:
         """Judge and show samples; tell whether there were any."""
         judge = self._parts.judge
         before = judge.samples
-        for stretch in judge.take(frames, self.clock.time(), self._position_s):
-            self._show(stretch, received_ns)
+        for stretch in judge.take(frames, epoch_us(self.clock) * 1e-6, self._position_s):
+            self._show(stretch)
         if judge.source is not None:
             self._parts.conversation.attend(judge.source)
             self._parts.timesync.source = judge.source
@@ -212,15 +212,15 @@ class Session:
         self._refusal_told = judge.refused
         return judge.samples > before or judge.refused
 
-    def _show(self, stretch: Stretch, received_ns: int) -> None:
+    def _show(self, stretch: Stretch) -> None:
         if stretch.anew:
             self._parts.conversation.begin_epoch()
             self._parts.timesync.begin_epoch()
             self._jitter.begin_epoch()
         if self._parts.judge.epoch != self._latest.epoch:
             self._publish()
-        self._parts.timesync.arrived(stretch.time_us, received_ns)
-        self._jitter.arrived(int(stretch.time_us[-1]), received_ns)
+        self._parts.timesync.arrived(stretch.time_us, stretch.received_ns)
+        self._jitter.arrived(stretch.time_us, stretch.received_ns)
         self._overlay.add(stretch.batch)
         self._parts.outlets.take_batch(stretch.batch)
         for view in self.views:

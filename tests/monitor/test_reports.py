@@ -50,6 +50,10 @@ TIMING = TimingStatistics(
 )
 
 
+def arrived(jitter: JitterCollector, time_us: int, received_ns: int) -> None:
+    jitter.arrived(np.array([time_us]), np.array([received_ns]))
+
+
 def batch_of(judged) -> Batch:
     return Batch(
         time_s=judged.time_us * 1e-6,
@@ -68,7 +72,7 @@ def session_result(frames=None, *, thresholds=None, other_digest=None, **changes
     frames = Device(design()).frames(SAMPLES) if frames is None else frames
     for k, judged in enumerate(feed(validator, Decoder(), frames, design())):
         overlay.add(batch_of(judged))
-        jitter.arrived(370_000 * k, 370_000_000 * k + k * k * 10_000)
+        arrived(jitter, 370_000 * k, 370_000_000 * k + k * k * 10_000)
     result = SessionResult(
         report=validator.report(thresholds, other_digest=other_digest),
         link=LINK,
@@ -268,9 +272,9 @@ def test_the_overlay_is_bounded_and_keeps_the_greatest_residual(samples: int) ->
 def test_the_jitter_is_what_an_arrival_is_off_its_samples() -> None:
     collector = JitterCollector()
     for k in range(11):
-        collector.arrived(k * 10_000, k * 10_000_000 + (k % 2) * 1_000_000)
+        arrived(collector, k * 10_000, k * 10_000_000 + (k % 2) * 1_000_000)
     collector.begin_epoch()
-    collector.arrived(0, 99)
+    arrived(collector, 0, 99)
     shown = collector.histogram()
     assert shown.counts.sum() == 10
     assert shown.edges[0] <= 1e-3 < shown.edges[-1]
