@@ -131,7 +131,9 @@ def _replay_state(replay: ReplayTransport | None) -> ReplayState | None:
     )
 
 
-def session_info(design: FilterDesign, transport: Transport, port: str) -> SessionInfo:
+def session_info(
+    design: FilterDesign, transport: Transport, port: str, thresholds: Thresholds
+) -> SessionInfo:
     """Return what does not change while a session runs."""
     eta = design.parameter("eta")
     return SessionInfo(
@@ -144,4 +146,6 @@ def session_info(design: FilterDesign, transport: Transport, port: str) -> Sessi
         port=port,
         replay=not transport.live,
         hostkit_version=__version__,
+        max_rms_deg=thresholds.max_rms_deg,
+        max_abs_deg=thresholds.max_abs_deg,
     )

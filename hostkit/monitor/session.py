@@ -37,7 +37,7 @@ class Session:
     ----------
     duration_s
         How long to look at samples, counted from the first; None until the stream ends.
-    recorder, recorders
+    recorders
         Where every good frame goes; they are closed when the session ends.
     views
         What is shown samples as they come, and the state four times a second.
@@ -51,7 +51,6 @@ class Session:
     transport: Transport
     thresholds: Thresholds
     duration_s: float | None = None
-    recorder: Recorder | None = None
     recorders: Sequence[Recorder] = ()
     clock: Clock = field(default_factory=SystemClock)
     options: SessionOptions = field(default_factory=SessionOptions)
@@ -74,14 +73,13 @@ class Session:
 
     def __post_init__(self) -> None:
         """Put the parts together."""
-        own = () if self.recorder is None else (self.recorder,)
         self._parts = parts = assemble(
             self.design,
             self.transport,
             self.thresholds,
             self.options,
             self.clock,
-            recorders=(*own, *self.recorders),
+            recorders=self.recorders,
             outlets=self.outlets,
         )
         self._silence = SilenceWatch(
@@ -93,7 +91,7 @@ class Session:
             patient=self.options.patient,
         )
         self._collect_anew()
-        self._info = session_info(self.design, self.transport, self.options.port)
+        self._info = session_info(self.design, self.transport, self.options.port, self.thresholds)
         self._begun_s = self.clock.monotonic()
         self._latest = parts.snapshot(elapsed_s=0.0, ended=False)
         self.controls = SessionControls(

@@ -120,7 +120,7 @@ def test_recorded_tlog_is_judged_the_same(tmp_path: Path) -> None:
     path = tmp_path / "flight.tlog"
     recorder = TlogWriter(path)
     frames = Device(D).frames(SAMPLES)
-    first = session(frames, live=False, ends=True, recorder=recorder).run()
+    first = session(frames, live=False, ends=True, recorders=[recorder]).run()
     recorder.close()
     assert list(read_tlog(path)) == frames
     port = open_transport(f"file:{path}", 0)
