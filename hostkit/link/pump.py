@@ -2,6 +2,7 @@
 
 import contextlib
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 
@@ -12,6 +13,8 @@ from hostkit.link.reconnect import Reconnecting
 QUEUE_BYTES = 8 << 20
 BATCH_S = 0.02
 """A thread that wakes for every frame at 1 kHz costs more than what it reads."""
+HANDOVER_S = 0.04
+"""Judging costs more for each batch than for each sample of it."""
 BATCH_BYTES = 2048
 """More than this at once means that more is waiting, where a serial port keeps 4096 bytes."""
 READ_S = 0.05
@@ -44,16 +47,24 @@ class Pump:
         Size of the queue.
     batch_s
         Time between two batches.
+    handover_s
+        Time between two returns of :meth:`read` with something.
     """
 
     live = True
 
     def __init__(
-        self, port: Reconnecting, *, queue_bytes: int = QUEUE_BYTES, batch_s: float = BATCH_S
+        self,
+        port: Reconnecting,
+        *,
+        queue_bytes: int = QUEUE_BYTES,
+        batch_s: float = BATCH_S,
+        handover_s: float = HANDOVER_S,
     ) -> None:
         self._port = port
         self._limit = queue_bytes
         self._batch_s = batch_s
+        self._handover_s, self._due_s = handover_s, 0.0
         self._queue: deque[tuple[int, bytearray]] = deque()
         self._queued_bytes = 0
         self._changed = threading.Condition()
@@ -85,10 +96,12 @@ class Pump:
         DeviceError
             If the thread failed; what it had read before has been returned by then.
         """
+        self._stop.wait(min(max(self._due_s - time.monotonic(), 0.0), timeout_s))
         with self._changed:
             if not self._queue and not self._ended:
                 self._changed.wait(timeout_s)
             if self._queue:
+                self._due_s = time.monotonic() + self._handover_s
                 self.epoch, data = self._queue.popleft()
                 self._queued_bytes -= len(data)
                 return bytes(data)

@@ -183,3 +183,18 @@ def test_large_pieces_wait_for_nothing() -> None:
     pump = pump_of(port, batch_s=1000.0)
     wait_until(lambda: not port.chunks)
     pump.close()
+
+
+def test_what_comes_soon_after_waits_for_its_turn_unless_nobody_wants_to_wait() -> None:
+    port = FakeTransport(b"a")
+    pump = pump_of(port, batch_s=0.0, handover_s=0.3)
+    assert pump.read(5.0) == b"a"
+    begun = time.monotonic()
+    port.chunks.append(b"b")
+    wait_until(lambda: pump._queued_bytes == 1)
+    assert pump.read(5.0) == b"b"
+    assert time.monotonic() - begun > 0.25
+    port.chunks.append(b"c")
+    wait_until(lambda: pump._queued_bytes == 1)
+    assert pump.read(0.0) == b"c"
+    pump.close()
