@@ -12,8 +12,8 @@ from hostkit.link.port import PortState
 from hostkit.link.reconnect import Reconnecting
 
 QUEUE_BYTES = 8 << 20
-BATCH_S = 0.02
-"""Decoder and models cost less for many samples at once than for each by itself."""
+HANDOVER_S = 0.04
+"""Judging costs more for each batch than for each sample of it."""
 REST_S = 0.001
 """Between two reads; so finely it is known when something came."""
 BATCH_BYTES = 2048
@@ -45,8 +45,8 @@ class Pump:
     """Reads a port in a thread of its own into a bounded queue.
 
     The queue holds 8 MiB. When it is full the newest bytes are dropped and counted in
-    `overrun_bytes`; those that are in it stay in order. While less than 2 KiB waits, it is handed
-    over at most every 20 ms, and says when each of its pieces came.
+    `overrun_bytes`; those that are in it stay in order. What is in it is handed over once in 40 ms
+    at most, and says when each of its pieces came.
 
     Attributes
     ----------
@@ -65,18 +65,26 @@ class Pump:
         What is read; from now on only the thread touches it.
     queue_bytes
         Size of the queue.
-    batch_s
-        Time between two batches.
+    handover_s
+        Least time between two batches.
+    rest_s
+        Time between two reads, while less than 2 KiB comes at once.
     """
 
     live = True
 
     def __init__(
-        self, port: Reconnecting, *, queue_bytes: int = QUEUE_BYTES, batch_s: float = BATCH_S
+        self,
+        port: Reconnecting,
+        *,
+        queue_bytes: int = QUEUE_BYTES,
+        handover_s: float = HANDOVER_S,
+        rest_s: float = REST_S,
     ) -> None:
         self._port = port
         self._limit = queue_bytes
-        self._batch_s = batch_s
+        self._handover_s, self._rest_s = handover_s, rest_s
+        self._due_s = 0.0
         self._queue: deque[_Batch] = deque()
         self._queued_bytes = 0
         self._changed = threading.Condition()
@@ -85,7 +93,6 @@ class Pump:
         self._ended = False
         self._failure: BaseException | None = None
         self._companions = contextlib.ExitStack()
-        self._taken_s = 0.0
         self.epoch = port.epoch
         self.arrivals: tuple[Arrival, ...] = ()
         self.overrun_bytes = 0
@@ -110,30 +117,20 @@ class Pump:
         DeviceError
             If the thread failed; what it had read before has been returned by then.
         """
+        self._stop.wait(min(max(self._due_s - time.monotonic(), 0.0), timeout_s))
         with self._changed:
-            self._await_batch(timeout_s)
+            self._changed.wait_for(lambda: self._queue or self._ended, timeout_s)
             self.arrivals = ()
             if self._queue:
                 batch = self._queue.popleft()
                 self._queued_bytes -= len(batch.data)
-                self._taken_s = time.monotonic()
+                self._due_s = time.monotonic() + self._handover_s
                 self.epoch, self.arrivals = batch.epoch, tuple(batch.arrivals)
                 return bytes(batch.data)
             if self._failure is not None:
                 raise DeviceError(f"reading the port failed: {self._failure}") from self._failure
             self.epoch = self._port.epoch
             return None if self._ended else b""
-
-    def _await_batch(self, timeout_s: float) -> None:
-        """Wait for bytes, and for more of them while the last batch was taken a moment ago."""
-        if not self._queue and not self._ended:
-            self._changed.wait_for(lambda: self._queue or self._ended, timeout_s)
-        left_s = self._taken_s + self._batch_s - time.monotonic()
-        if self._queue and left_s > 0.0:
-            self._changed.wait_for(
-                lambda: self._queued_bytes >= BATCH_BYTES or self._ended,
-                min(left_s, timeout_s),
-            )
 
     def write(self, data: bytes) -> None:
         """Send to the device, from any thread; what cannot be sent at once is lost."""
@@ -190,7 +187,7 @@ class Pump:
                     break
                 self._put(data)
                 if 0 < len(data) < BATCH_BYTES:
-                    time.sleep(REST_S)
+                    time.sleep(self._rest_s)
         except BaseException as error:  # told to the reader, who would otherwise wait for ever
             self._failure = error
         finally:

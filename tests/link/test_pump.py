@@ -33,7 +33,7 @@ def test_full_queue_drops_the_newest_and_counts_them_exactly(size: int) -> None:
     chunks = [bytes([k % 251]) * size for k in range(60)]
     sent = b"".join(chunks)
     limit = len(sent) // 3
-    pump = pump_of(FakeTransport(*chunks), queue_bytes=limit, batch_s=0.0)
+    pump = pump_of(FakeTransport(*chunks), queue_bytes=limit, rest_s=0.0)
     wait_until(lambda: pump.overrun_bytes == len(sent) - limit)
     assert pump.read(1.0) == sent[:limit]
     pump.close()
@@ -61,7 +61,7 @@ def test_queue_of_a_flood_that_nobody_reads_holds_8_mib() -> None:
 
 
 def test_many_small_pieces_cost_no_more_than_their_bytes() -> None:
-    pump = pump_of(FakeTransport(*[b"x"] * 2000), batch_s=0.0)
+    pump = pump_of(FakeTransport(*[b"x"] * 2000), rest_s=0.0)
     wait_until(lambda: pump._queued_bytes == 2000)
     assert len(pump._queue) == 1
     pump.close()
@@ -170,17 +170,6 @@ def test_close_ends_the_thread_quickly_and_calls_what_was_asked() -> None:
     pump.close()
 
 
-def test_small_pieces_are_handed_over_together() -> None:
-    chunks = numbered(20, 100)
-    pump = pump_of(FakeTransport(chunks[0]))
-    assert pump.read(5.0) == chunks[0]
-    taken_s = pump._taken_s
-    pump._port._inner.chunks += chunks[1:4]
-    assert pump.read(5.0) == b"".join(chunks[1:4])
-    assert pump._taken_s - taken_s >= 0.02
-    pump.close()
-
-
 def test_each_piece_has_its_time() -> None:
     port = FakeTransport(b"one", b"three")
     before_ns = time.monotonic_ns()
@@ -198,8 +187,23 @@ def test_each_piece_has_its_time() -> None:
 
 def test_large_pieces_wait_for_nothing() -> None:
     port = FakeTransport(*numbered(20, 4000))
-    pump = pump_of(port, batch_s=1000.0)
+    pump = pump_of(port, rest_s=1000.0)
     got = 0
     while got < 20 * 4000:
         got += len(pump.read(5.0) or b"")
+    pump.close()
+
+
+def test_what_comes_soon_after_waits_for_its_turn_unless_nobody_wants_to_wait() -> None:
+    port = FakeTransport(b"a")
+    pump = pump_of(port, rest_s=0.0, handover_s=0.3)
+    assert pump.read(5.0) == b"a"
+    begun = time.monotonic()
+    port.chunks.append(b"b")
+    wait_until(lambda: pump._queued_bytes == 1)
+    assert pump.read(5.0) == b"b"
+    assert time.monotonic() - begun > 0.25
+    port.chunks.append(b"c")
+    wait_until(lambda: pump._queued_bytes == 1)
+    assert pump.read(0.0) == b"c"
     pump.close()
