@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from benchmarks.table import Table, figure
 from benchmarks.timing import least_seconds
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder, Frame, trace_of
+from hostkit.link.frames.decoder import Decoder, Frame, trace_of
 
 ROUNDS = 3000
 """A sample, an attitude and a scaled reading each."""

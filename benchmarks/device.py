@@ -14,7 +14,7 @@ from hostkit.emulation import avr_board, ghdl, host_board
 from hostkit.emulation.run import stimulus_of
 from hostkit.errors import ToolMissingError
 from hostkit.filters.complementary import lower, parameters, run_float, run_integer
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.render import generate, write

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder, Frame
+from hostkit.link.frames.decoder import Decoder, Frame
 
 M = python_module()
 OWN = {"SYS_ID": 1.0, "CAL_START": 0.0, "FILT_TAU": 2.75, "TILT_OFS_ROLL": 0.0}

@@ -12,7 +12,7 @@ from designs import design
 from hostkit.emulation.board import BoardRun, Stimulus
 from hostkit.emulation.tools import require
 from hostkit.errors import ToolMissingError
-from hostkit.link.decoder import Decoder, Frame
+from hostkit.link.frames.decoder import Decoder, Frame
 from hostkit.records import FilterDesign
 from hostkit.render import generate, write
 from hostkit.sensors import SENSORS

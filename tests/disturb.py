@@ -9,9 +9,9 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 
 from hostkit.dialect import python_module
-from hostkit.link.framing import Framer
+from hostkit.link.frames.framing import Framer
+from hostkit.link.ports.transport import PortState, Transport
 from hostkit.link.statistics import LinkStatistics
-from hostkit.link.transport import PortState, Transport
 
 MAGIC = 0xFD
 TEXT = b"I2C bus recovered, 3 retries.\r\n"

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from hostkit.errors import DeviceError
-from hostkit.link.ports import PortInfo
+from hostkit.link.ports.finder import PortInfo
 
 LIMIT_S = 20.0
 

@@ -2,7 +2,7 @@
 
 from designs import design
 
-from hostkit.link.decoder import Decoder, trace_of
+from hostkit.link.frames.decoder import Decoder, trace_of
 from hostkit.records import AXES
 from hostkit.validation import Judged, Validator
 

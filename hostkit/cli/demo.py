@@ -20,7 +20,7 @@ from hostkit.design_file import digest, save_design
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.run import EmulationResult, build, emulate
 from hostkit.errors import EmulationError, HostkitError, ToolMissingError, VerdictError
-from hostkit.link.transport import open_transport
+from hostkit.link.ports.transport import open_transport
 from hostkit.monitor import Session, SessionResult
 from hostkit.optimisers import qpso
 from hostkit.recordings import Recording, load, save

@@ -10,7 +10,7 @@ from hostkit.cli.output import emit_json
 from hostkit.flashing import PROGRAMMERS, FlashPlan, plan_flash
 from hostkit.flashing import flash as run_flash
 from hostkit.flashing.loading import BOOT_BAUD
-from hostkit.link.lease import borrow_port
+from hostkit.link.ports.lease import borrow_port
 from hostkit.render import target_of
 from hostkit.targets import Target
 

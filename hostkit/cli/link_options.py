@@ -10,10 +10,10 @@ from hostkit.cli.chosen import Command
 from hostkit.cli.inputs import read_design
 from hostkit.design_file import digest
 from hostkit.errors import VerdictError
-from hostkit.link.device_link import DeviceLink
-from hostkit.link.parameter_facts import ParameterFacts, parameter_facts
-from hostkit.link.signing import SigningKey
-from hostkit.link.transport import open_link
+from hostkit.link.device.device_link import DeviceLink
+from hostkit.link.device.parameter_facts import ParameterFacts, parameter_facts
+from hostkit.link.frames.signing import SigningKey
+from hostkit.link.ports.transport import open_link
 from hostkit.records import FilterDesign
 
 CHOSEN: Final = "hostkit.link"

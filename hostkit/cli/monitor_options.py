@@ -8,7 +8,7 @@ import click
 
 from hostkit.cli.chosen import Command
 from hostkit.cli.inputs import finite
-from hostkit.link.signing import SigningKey
+from hostkit.link.frames.signing import SigningKey
 from hostkit.records import FilterDesign
 from hostkit.targets.atmega328p import ATMEGA328P
 from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thresholds

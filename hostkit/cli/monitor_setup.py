@@ -13,14 +13,14 @@ from hostkit.cli.output import json_text
 from hostkit.errors import ToolMissingError
 from hostkit.link.forward import Forwarder
 from hostkit.link.json_udp import JsonUdp
-from hostkit.link.part_file import PartFile
-from hostkit.link.replay import ReplayTransport
-from hostkit.link.transport import Transport, open_link
+from hostkit.link.logs.part_file import PartFile
+from hostkit.link.logs.replay import ReplayTransport
+from hostkit.link.ports.transport import Transport, open_link
 from hostkit.monitor import Session
 from hostkit.monitor.document import monitor_document
 from hostkit.monitor.outlets import Outlets
-from hostkit.monitor.recordings import Recorder
-from hostkit.monitor.sample_files import open_recorder
+from hostkit.monitor.recording.recordings import Recorder
+from hostkit.monitor.recording.sample_files import open_recorder
 from hostkit.records import AXES, FilterDesign
 
 

@@ -17,10 +17,10 @@ from hostkit.cli.params_output import (
     show_outcomes,
 )
 from hostkit.errors import HostkitError
-from hostkit.link.device_link import DeviceLink, SettingOutcome
-from hostkit.link.parameter_compare import Difference, differences
-from hostkit.link.parameter_entry import ParameterEntry, as_real32
-from hostkit.link.parameter_file import read_parameter_file, write_parameter_file
+from hostkit.link.device.device_link import DeviceLink, SettingOutcome
+from hostkit.link.device.parameter_compare import Difference, differences
+from hostkit.link.device.parameter_entry import ParameterEntry, as_real32
+from hostkit.link.device.parameter_file import read_parameter_file, write_parameter_file
 
 STORED_LATER = "the device stores this when nothing was changed for 3 s; --store does it at once"
 FILE = click.argument(

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import click
 
 from hostkit.filters.complementary import eta_from_tau
-from hostkit.link.device_link import DeviceLink, SettingOutcome
-from hostkit.link.parameter_entry import ParameterEntry
-from hostkit.link.parameter_facts import TAU_NAME, ParameterFacts
-from hostkit.link.parameter_file import number_text
+from hostkit.link.device.device_link import DeviceLink, SettingOutcome
+from hostkit.link.device.parameter_entry import ParameterEntry
+from hostkit.link.device.parameter_facts import TAU_NAME, ParameterFacts
+from hostkit.link.device.parameter_file import number_text
 
 SCHEMA = "hostkit.params/1"
 

@@ -8,10 +8,10 @@ import click
 from hostkit.cli.inputs import JSON, say
 from hostkit.cli.output import emit_json
 from hostkit.errors import DeviceError
-from hostkit.link.baud_scan import RATES, BaudScan, scan_baud
 from hostkit.link.clock import SystemClock
-from hostkit.link.ports import PortInfo, list_ports, pick_port, port_info, with_use
-from hostkit.link.serial_port import SerialTransport
+from hostkit.link.ports.baud_scan import RATES, BaudScan, scan_baud
+from hostkit.link.ports.finder import PortInfo, list_ports, pick_port, port_info, with_use
+from hostkit.link.ports.serial_port import SerialTransport
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,8 +13,8 @@ from hostkit.cli.monitor_setup import open_port, open_recorders
 from hostkit.cli.output import emit_json
 from hostkit.cli.stopping import stoppable
 from hostkit.errors import HostkitError
-from hostkit.monitor.capture import Capture, CaptureResult
-from hostkit.monitor.recordings import Recorder
+from hostkit.monitor.recording.capture import Capture, CaptureResult
+from hostkit.monitor.recording.recordings import Recorder
 
 
 def _port_options(command: click.decorators.FC) -> click.decorators.FC:

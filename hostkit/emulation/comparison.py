@@ -18,7 +18,7 @@ from hostkit.emulation.fault_report import (
     said,
 )
 from hostkit.filters import FILTERS
-from hostkit.link.decoder import Frame
+from hostkit.link.frames.decoder import Frame
 from hostkit.records import AXES, AngleTrace, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g

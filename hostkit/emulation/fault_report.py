@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.filters import FILTERS
-from hostkit.link.decoder import Frame
+from hostkit.link.frames.decoder import Frame
 from hostkit.records import AXES, FilterDesign
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g

@@ -13,8 +13,8 @@ from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
 from hostkit.emulation.system_faults import Generics, fault_generics
 from hostkit.errors import EmulationError
-from hostkit.link.decoder import Decoder
-from hostkit.link.tlog import TlogWriter
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.logs.tlog import TlogWriter
 from hostkit.recordings import Recording
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS

@@ -35,7 +35,7 @@ from hostkit.emulation.fault import Fault, planned_faults
 from hostkit.emulation.fault_report import said
 from hostkit.errors import EmulationError, HostkitError
 from hostkit.filters import FILTERS
-from hostkit.link.decoder import Decoder, Frame, trace_of
+from hostkit.link.frames.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
 from hostkit.records import AXES, AngleTrace, FilterDesign
 from hostkit.render import FirmwareOptions, read_manifest

@@ -18,7 +18,7 @@ from hostkit.importers.rotation import attitude_from_frd, from_euler, from_frd
 from hostkit.importers.timebase import seconds, unwrapped
 from hostkit.importers.tlog_arrival import arrived_attitude
 from hostkit.importers.units import M_S2_PER, RAD_S_PER, force_scale, rate_scale
-from hostkit.link.tlog import MAGIC_V1, STAMP, read_stamped
+from hostkit.link.logs.tlog import MAGIC_V1, STAMP, read_stamped
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
 from hostkit.units import STANDARD_GRAVITY_M_S2

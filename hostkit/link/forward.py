@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from hostkit.link.addresses import open_udp, resolve_udp
 from hostkit.link.clock import SystemClock
-from hostkit.link.decoder import Decoder
-from hostkit.link.exchange import MonotonicClock
+from hostkit.link.device.exchange import MonotonicClock
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.ports.addresses import open_udp, resolve_udp
 
 DATAGRAMS_PER_POLL = 64
 LARGEST_DATAGRAM_BYTES = 4096

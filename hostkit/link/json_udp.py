@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.link.addresses import open_udp, resolve_udp
+from hostkit.link.ports.addresses import open_udp, resolve_udp
 from hostkit.records import Axis
 
 LARGEST_SLIP_S = 0.5

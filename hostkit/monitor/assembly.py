@@ -4,18 +4,18 @@ from collections.abc import Sequence
 from functools import partial
 
 from hostkit.link.clock import Clock, now_ns
-from hostkit.link.decoder import Decoder
-from hostkit.link.encoder import Encoder
-from hostkit.link.timesync import TimeSync
-from hostkit.link.transport import Transport
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.frames.encoder import Encoder
+from hostkit.link.frames.timesync import TimeSync
+from hostkit.link.ports.transport import Transport
 from hostkit.monitor.conversation import Conversation
 from hostkit.monitor.judge import Judge
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.parts import Parts, SessionOptions
 from hostkit.monitor.receiver import Receiver
-from hostkit.monitor.recordings import Recorder, Recordings
-from hostkit.monitor.sample_files import open_recorder
+from hostkit.monitor.recording.recordings import Recorder, Recordings
+from hostkit.monitor.recording.sample_files import open_recorder
 from hostkit.records import FilterDesign
 from hostkit.validation import Thresholds, Validator
 

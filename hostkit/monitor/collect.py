@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.link.timesync import newest_of_each
+from hostkit.link.frames.timesync import newest_of_each
 from hostkit.monitor.result import Overlay
 from hostkit.monitor.snapshot import Batch
 from hostkit.validation import Histogram, LogHistogram

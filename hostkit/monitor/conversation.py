@@ -6,12 +6,12 @@ from typing import Any, Final
 from hostkit.dialect import python_module
 from hostkit.errors import HostkitError
 from hostkit.link.clock import Clock
-from hostkit.link.commands import CommandClient
-from hostkit.link.decoder import Frame, Source
-from hostkit.link.encoder import Encoder
-from hostkit.link.parameter_facts import ParameterFacts, parameter_facts
-from hostkit.link.parameters import ParameterClient, ParameterEntry
-from hostkit.link.transport import Transport
+from hostkit.link.device.commands import CommandClient
+from hostkit.link.device.parameter_facts import ParameterFacts, parameter_facts
+from hostkit.link.device.parameters import ParameterClient, ParameterEntry
+from hostkit.link.frames.decoder import Frame, Source
+from hostkit.link.frames.encoder import Encoder
+from hostkit.link.ports.transport import Transport
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.snapshot import CommandState, Level, ParameterState
 from hostkit.records import FilterDesign

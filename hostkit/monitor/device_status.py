@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Frame, Source
+from hostkit.link.frames.decoder import Frame, Source
 from hostkit.monitor.snapshot import DeviceStatus
 from hostkit.sensors.mpu6050 import TEMPERATURE_COUNTS_PER_DEG_C, TEMPERATURE_OFFSET_DEG_C
 

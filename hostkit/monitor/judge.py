@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.design_file import digest
-from hostkit.link.decoder import Frame, Source, digest_of, trace_of
-from hostkit.link.samples import payloads
+from hostkit.link.frames.decoder import Frame, Source, digest_of, trace_of
+from hostkit.link.frames.samples import payloads
 from hostkit.monitor.device_status import US_PER_S
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.snapshot import Batch

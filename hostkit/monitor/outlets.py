@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from hostkit.link.decoder import Frame
 from hostkit.link.forward import Forwarder
+from hostkit.link.frames.decoder import Frame
 from hostkit.link.json_udp import JsonUdp
 from hostkit.monitor.snapshot import Batch, ForwardState
 

@@ -7,10 +7,10 @@ from hostkit import __version__
 from hostkit.design_file import digest
 from hostkit.filters.complementary import crossover_hz, tau_from_eta
 from hostkit.link.clock import Clock
-from hostkit.link.replay import ReplayTransport
-from hostkit.link.signing import SigningKey
-from hostkit.link.timesync import TimeSync
-from hostkit.link.transport import Transport
+from hostkit.link.frames.signing import SigningKey
+from hostkit.link.frames.timesync import TimeSync
+from hostkit.link.logs.replay import ReplayTransport
+from hostkit.link.ports.transport import Transport
 from hostkit.monitor.conversation import Conversation
 from hostkit.monitor.device_status import Watches
 from hostkit.monitor.judge import Judge
@@ -18,7 +18,7 @@ from hostkit.monitor.notices import Notices
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.rates import Rates, Totals
 from hostkit.monitor.receiver import Receiver
-from hostkit.monitor.recordings import Recordings
+from hostkit.monitor.recording.recordings import Recordings
 from hostkit.monitor.snapshot import ReplayState, SessionInfo, Snapshot
 from hostkit.records import AXES, FilterDesign
 from hostkit.validation import Thresholds, Validator

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, replace
 
 from hostkit.link.clock import Clock, now_ns
-from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.pump import Pump
+from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.ports.pump import Pump
+from hostkit.link.ports.transport import Transport
 from hostkit.link.statistics import LinkStatistics
-from hostkit.link.transport import Transport
 from hostkit.monitor.notices import Notices
 
 HEARD_BYTES = 512

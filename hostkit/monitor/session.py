@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock, SystemClock, epoch_us
-from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.transport import Transport
+from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.ports.transport import Transport
 from hostkit.monitor.assembly import assemble
 from hostkit.monitor.collect import JitterCollector, OverlayCollector
 from hostkit.monitor.controls import SessionControls
@@ -16,7 +16,7 @@ from hostkit.monitor.judge import Stretch
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.parts import Parts, SessionOptions, session_info
 from hostkit.monitor.receiver import Received
-from hostkit.monitor.recordings import Recorder
+from hostkit.monitor.recording.recordings import Recorder
 from hostkit.monitor.requests import SessionRequests
 from hostkit.monitor.result import SessionResult
 from hostkit.monitor.silence import SilenceWatch

@@ -2,7 +2,7 @@
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock
-from hostkit.link.transport import Transport
+from hostkit.link.ports.transport import Transport
 from hostkit.monitor.device_status import Watches
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.receiver import Receiver

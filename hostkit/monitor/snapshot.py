@@ -9,8 +9,8 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.link.ports.transport import PortState
 from hostkit.link.statistics import LinkStatistics, TimingStatistics
-from hostkit.link.transport import PortState
 from hostkit.records import Axis, ValidationReport, read_only
 
 Vector = NDArray[np.float64]

@@ -216,7 +216,7 @@ def test_monitor_judges_a_tlog(hostkit, design: str) -> None:
     from device import Device
 
     from hostkit.design_file import load_design
-    from hostkit.link.tlog import TlogWriter
+    from hostkit.link.logs.tlog import TlogWriter
 
     writer = TlogWriter(Path("f.tlog"))
     for k, frame in enumerate(Device(load_design(Path(design))).frames(100)):
@@ -238,7 +238,7 @@ def test_monitor_refuses_another_digest(hostkit, recording: str, design: str) ->
     from device import Device
 
     from hostkit.design_file import load_design
-    from hostkit.link.tlog import TlogWriter
+    from hostkit.link.logs.tlog import TlogWriter
 
     writer = TlogWriter(Path("f.tlog"))
     for k, frame in enumerate(Device(load_design(Path(design))).frames(10)):

@@ -22,7 +22,7 @@ from device import Device
 
 from hostkit.cli.main import run
 from hostkit.design_file import save_design
-from hostkit.link.tlog import STAMP, read_tlog
+from hostkit.link.logs.tlog import STAMP, read_tlog
 from hostkit.recordings import load
 
 D = design()

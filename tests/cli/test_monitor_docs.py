@@ -11,7 +11,7 @@ from device import Device
 
 from hostkit.cli.main import COMMANDS, cli, run
 from hostkit.design_file import save_design
-from hostkit.link.tlog import STAMP
+from hostkit.link.logs.tlog import STAMP
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 OTHERS = {"--master"}

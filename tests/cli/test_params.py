@@ -19,9 +19,9 @@ from pymavlink.mavparm import MAVParmDict
 
 from hostkit.cli.main import run
 from hostkit.design_file import digest, save_design
-from hostkit.link.encoder import Encoder
-from hostkit.link.parameter_facts import parameter_facts
-from hostkit.link.signing import SigningKey, setup_signing_message
+from hostkit.link.device.parameter_facts import parameter_facts
+from hostkit.link.frames.encoder import Encoder
+from hostkit.link.frames.signing import SigningKey, setup_signing_message
 from hostkit.recordings import save
 from hostkit.simulation import SensorErrors, simulate
 

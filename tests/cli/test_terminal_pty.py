@@ -18,7 +18,7 @@ from designs import design
 from device import Device
 
 from hostkit.design_file import save_design
-from hostkit.link.tlog import STAMP
+from hostkit.link.logs.tlog import STAMP
 
 PATIENCE_S = 30.0
 HIDE, SHOW = "\x1b[?25l", "\x1b[?25h"

@@ -13,8 +13,8 @@ from designs import design
 from station import PATIENCE_S, GroundStation, require_station
 
 from hostkit.design_file import save_design
-from hostkit.link.decoder import Decoder
-from hostkit.link.tlog import read_tlog
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.logs.tlog import read_tlog
 from hostkit.recordings import save
 from hostkit.simulation import SensorErrors, simulate
 

@@ -15,7 +15,7 @@ from hostkit.errors import ToolMissingError
 from hostkit.flashing import drive as drives
 from hostkit.flashing import loading
 from hostkit.flashing.programmer import PROGRAMMERS
-from hostkit.link.transport import open_link
+from hostkit.link.ports.transport import open_link
 
 IMAGES = {"atmega328p": "firmware.hex", "rp2040": "firmware.uf2", "stm32f103": "firmware.bin"}
 

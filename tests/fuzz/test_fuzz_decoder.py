@@ -12,11 +12,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder, Frame, digest_of, is_retuned, trace_of
-from hostkit.link.framing import LONGEST_FRAME_BYTES, checksum
-from hostkit.link.sequence import MOST_SOURCES
-from hostkit.link.signing import SigningClock, SigningKey
-from hostkit.link.timesync import TimeSync
+from hostkit.link.frames.decoder import Decoder, Frame, digest_of, is_retuned, trace_of
+from hostkit.link.frames.framing import LONGEST_FRAME_BYTES, checksum
+from hostkit.link.frames.sequence import MOST_SOURCES
+from hostkit.link.frames.signing import SigningClock, SigningKey
+from hostkit.link.frames.timesync import TimeSync
 
 M = python_module()
 QUICK = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -16,7 +16,7 @@ from test_sensor_driver import ROWS, check_samples, played
 from hostkit.emulation.fpga_system import timing_of
 from hostkit.emulation.system_bench import SystemTiming, build_system, run_system
 from hostkit.filters.complementary import lower, run_integer
-from hostkit.link.decoder import Decoder, trace_of
+from hostkit.link.frames.decoder import Decoder, trace_of
 from hostkit.records import AXES
 from hostkit.synthesis import convert
 from hostkit.synthesis.convert import needed_sources

@@ -17,8 +17,8 @@ from hostkit.emulation.fpga_system import emulate_system, table_of, timing_of, w
 from hostkit.emulation.system_bench import IntArray, SystemRun, build_system, run_system
 from hostkit.errors import BuildError, EmulationError
 from hostkit.filters.complementary import lower, parameters, run_integer, step_integer
-from hostkit.link.decoder import Decoder, Frame, trace_of
-from hostkit.link.tlog import read_tlog
+from hostkit.link.frames.decoder import Decoder, Frame, trace_of
+from hostkit.link.logs.tlog import read_tlog
 from hostkit.recordings import Recording, save
 from hostkit.records import AXES, FilterDesign
 from hostkit.render import FpgaOptions, generate, write

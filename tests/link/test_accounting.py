@@ -9,10 +9,10 @@ from device import Device
 from disturb import EVERYTHING, DisturbedTransport, Disturber, Harm
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.sequence import MOST_SOURCES, OTHERS
+from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.frames.sequence import MOST_SOURCES, OTHERS
+from hostkit.link.ports.transport import PortState
 from hostkit.link.statistics import LinkStatistics, SourceStatistics
-from hostkit.link.transport import PortState
 
 M = python_module()
 FRAMES = Device(design()).frames(1500)

@@ -8,7 +8,14 @@ from device import Device
 from fake_ports import FakeClock, RatedPort
 
 from hostkit.errors import DeviceError
-from hostkit.link.baud_scan import LISTEN_S, RATES, START_S, readable_line, scan_baud, text_share
+from hostkit.link.ports.baud_scan import (
+    LISTEN_S,
+    RATES,
+    START_S,
+    readable_line,
+    scan_baud,
+    text_share,
+)
 
 DEVICE = Device(design())
 STREAM = b"".join(DEVICE.frames(100))

@@ -4,9 +4,9 @@ import pytest
 from answering import AnsweringDevice, M, ManualClock, Sender
 
 from hostkit.errors import HostkitError
-from hostkit.link.commands import COMMANDS, CommandClient
-from hostkit.link.decoder import Decoder
-from hostkit.link.encoder import Encoder
+from hostkit.link.device.commands import COMMANDS, CommandClient
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.frames.encoder import Encoder
 
 ACCEPTED, IN_PROGRESS = 0, 5
 CALIBRATE = 241

@@ -6,7 +6,7 @@ from designs import all_parameters, design
 from device import Device
 
 from hostkit.dialect import python_module, sample_bytes
-from hostkit.link.decoder import Decoder, digest_of, trace_of
+from hostkit.link.frames.decoder import Decoder, digest_of, trace_of
 from hostkit.records import AXES
 
 DEVICE = Device(design())

@@ -6,8 +6,8 @@ import pytest
 from answering import AnsweringDevice, ManualClock, Sender
 
 from hostkit.errors import DeviceError, HostkitError
-from hostkit.link.device_link import DeviceLink
-from hostkit.link.signing import SigningKey, sign_with
+from hostkit.link.device.device_link import DeviceLink
+from hostkit.link.frames.signing import SigningKey, sign_with
 
 
 class Stream:

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hostkit.errors import DeviceError
-from hostkit.link.decoder import Decoder
 from hostkit.link.forward import BURST_BYTES, BYTES_PER_S, DATAGRAMS_PER_POLL, Forwarder
+from hostkit.link.frames.decoder import Decoder
 
 STATION = Sender(255, 230)
 

@@ -13,14 +13,14 @@ import pytest
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
-from hostkit.link import lease
-from hostkit.link.lease import borrow_port, lease_folder, offer_port, socket_path
-from hostkit.link.transport import open_link, open_transport
+from hostkit.link.ports.finder import lease
+from hostkit.link.ports.lease import borrow_port, lease_folder, offer_port, socket_path
+from hostkit.link.ports.transport import open_link, open_transport
 
 BORROWER = """
 import sys
-from hostkit.link.lease import borrow_port
-from hostkit.link.transport import open_transport
+from hostkit.link.ports.lease import borrow_port
+from hostkit.link.ports.transport import open_transport
 
 with borrow_port(sys.argv[1]) as borrowed:
     port = open_transport(sys.argv[1], 500000)

@@ -11,9 +11,13 @@ from hypothesis import strategies as st
 from pymavlink.mavparm import MAVParmDict
 
 from hostkit.errors import HostkitError
-from hostkit.link.parameter_compare import differences
-from hostkit.link.parameter_entry import ParameterEntry
-from hostkit.link.parameter_file import number_text, read_parameter_file, write_parameter_file
+from hostkit.link.device.parameter_compare import differences
+from hostkit.link.device.parameter_entry import ParameterEntry
+from hostkit.link.device.parameter_file import (
+    number_text,
+    read_parameter_file,
+    write_parameter_file,
+)
 
 VALUES = {
     "SYS_ID": 1.0,

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hostkit.errors import HostkitError
-from hostkit.link.decoder import Decoder
-from hostkit.link.encoder import Encoder
-from hostkit.link.parameter_facts import parameter_facts
-from hostkit.link.parameters import ParameterClient
+from hostkit.link.device.parameter_facts import parameter_facts
+from hostkit.link.device.parameters import ParameterClient
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.frames.encoder import Encoder
 
 
 class Bench:

@@ -8,10 +8,17 @@ import pytest
 from fake_ports import Cable, found_by_pyserial, usb
 
 from hostkit.errors import DeviceError
-from hostkit.link import ports
-from hostkit.link.boards import BOARDS, board_of
-from hostkit.link.port_use import access_of, user_of
-from hostkit.link.ports import PortFinder, PortInfo, list_ports, pick_port, port_info, with_use
+from hostkit.link.ports.boards import BOARDS, board_of
+from hostkit.link.ports.finder import (
+    PortFinder,
+    PortInfo,
+    list_ports,
+    pick_port,
+    port_info,
+    with_use,
+)
+from hostkit.link.ports.finder import finder as ports
+from hostkit.link.ports.port_use import access_of, user_of
 
 UNO = usb("/dev/ttyACM0", 0x2341, 0x0043, "5563")
 NANO = usb("/dev/ttyUSB0", 0x1A86, 0x7523)

@@ -7,8 +7,8 @@ import pytest
 from fake_ports import FakeOpener, FakeTransport, read_until, wait_until
 
 from hostkit.errors import DeviceError
-from hostkit.link.pump import Pump
-from hostkit.link.reconnect import Reconnecting
+from hostkit.link.ports.pump import Pump
+from hostkit.link.ports.reconnect import Reconnecting
 
 
 def pump_of(*ports: FakeTransport | DeviceError, keep: bool = True, **options: object) -> Pump:

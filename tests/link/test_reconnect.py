@@ -6,7 +6,7 @@ import pytest
 from fake_ports import FakeClock, FakeOpener, FakeTransport
 
 from hostkit.errors import DeviceError
-from hostkit.link.reconnect import Reconnecting
+from hostkit.link.ports.reconnect import Reconnecting
 
 GONE = DeviceError("not there")
 

@@ -5,9 +5,9 @@ from designs import design
 from device import Device
 
 from hostkit.errors import DeviceError
-from hostkit.link.replay import ReplayTransport
-from hostkit.link.tlog import STAMP, TlogWriter
-from hostkit.link.tlog_index import MOST_MARKS, index_tlog
+from hostkit.link.logs.replay import ReplayTransport
+from hostkit.link.logs.tlog import STAMP, TlogWriter
+from hostkit.link.logs.tlog_index import MOST_MARKS, index_tlog
 
 SAMPLES = 300
 PERIOD_US = 10_000
@@ -107,7 +107,7 @@ def test_seek_in_a_long_file_is_exact(tmp_path: Path) -> None:
 
 
 def test_the_index_is_bounded_whatever_the_length(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("hostkit.link.tlog_index.MOST_MARKS", 4)
+    monkeypatch.setattr("hostkit.link.logs.tlog_index.MOST_MARKS", 4)
     path = written(tmp_path / "long.tlog", FRAMES * 40)
     with path.open("rb") as file:
         index = index_tlog(file, path)

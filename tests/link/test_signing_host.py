@@ -15,8 +15,8 @@ from pymavlink.generator.mavcrc import x25crc
 from hostkit.emulation import host_board
 from hostkit.emulation.board import BoardRun
 from hostkit.errors import DeviceError
-from hostkit.link.decoder import Decoder
-from hostkit.link.signing import (
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.frames.signing import (
     MOST_STREAMS,
     SECRET_BYTES,
     SigningClock,

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.timesync import SAMPLES, TimeSync
+from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.frames.timesync import SAMPLES, TimeSync
 
 M = python_module()
 MS, S = 1_000_000, 1_000_000_000

@@ -16,11 +16,11 @@ from device import Device
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
-from hostkit.link import transport
-from hostkit.link.baud_scan import BaudScan
-from hostkit.link.serial_port import SerialTransport, explain
-from hostkit.link.sockets import SocketTransport, connect, listen
-from hostkit.link.transport import open_link, open_transport
+from hostkit.link.ports.baud_scan import BaudScan
+from hostkit.link.ports.finder import transport
+from hostkit.link.ports.serial_port import SerialTransport, explain
+from hostkit.link.ports.sockets import SocketTransport, connect, listen
+from hostkit.link.ports.transport import open_link, open_transport
 
 
 def free_port(kind: int = socket.SOCK_STREAM, host: str = "127.0.0.1") -> int:

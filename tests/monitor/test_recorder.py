@@ -13,11 +13,11 @@ from designs import design
 from device import Device
 
 from hostkit.errors import HostkitError
-from hostkit.link.decoder import Decoder, Frame
-from hostkit.link.tlog import STAMP, TlogWriter, read_tlog
+from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.logs.tlog import STAMP, TlogWriter, read_tlog
 from hostkit.monitor.notices import Notices
-from hostkit.monitor.recordings import Recordings, require_name
-from hostkit.monitor.sample_files import open_recorder
+from hostkit.monitor.recording.recordings import Recordings, require_name
+from hostkit.monitor.recording.sample_files import open_recorder
 from hostkit.recordings import load
 from hostkit.sensors import SENSORS
 
@@ -169,7 +169,7 @@ def test_two_recordings_of_one_name_do_not_mix(tmp_path: Path) -> None:
 KILLED = """
 import sys, time
 from pathlib import Path
-from hostkit.link.tlog import TlogWriter
+from hostkit.link.logs.tlog import TlogWriter
 writer = TlogWriter(Path(sys.argv[1]))
 for k in range(500):
     writer.write(k, bytes.fromhex(sys.argv[2]))

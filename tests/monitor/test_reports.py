@@ -13,7 +13,7 @@ from designs import design
 from device import Device
 from judging import feed
 
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 from hostkit.link.statistics import LinkStatistics, SourceStatistics, Spread, TimingStatistics
 from hostkit.monitor.collect import MOST_POINTS, JitterCollector, OverlayCollector
 from hostkit.monitor.document import monitor_document

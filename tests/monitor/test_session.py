@@ -9,8 +9,8 @@ from designs import design
 from device import Device
 
 from hostkit.errors import DeviceError, HostkitError
-from hostkit.link.tlog import CHUNK_BYTES, TlogWriter, read_tlog
-from hostkit.link.transport import open_transport
+from hostkit.link.logs.tlog import CHUNK_BYTES, TlogWriter, read_tlog
+from hostkit.link.ports.transport import open_transport
 from hostkit.monitor import Session
 from hostkit.validation import Thresholds
 

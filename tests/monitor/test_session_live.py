@@ -10,9 +10,9 @@ from designs import design
 from device import Device
 
 from hostkit.errors import DeviceError, HostkitError
-from hostkit.link.decoder import Decoder
-from hostkit.link.replay import ReplayTransport
-from hostkit.link.tlog import STAMP, TlogWriter, read_tlog
+from hostkit.link.frames.decoder import Decoder
+from hostkit.link.logs.replay import ReplayTransport
+from hostkit.link.logs.tlog import STAMP, TlogWriter, read_tlog
 from hostkit.monitor import Session, SessionOptions
 from hostkit.monitor.snapshot import Batch, Snapshot
 from hostkit.validation import Thresholds

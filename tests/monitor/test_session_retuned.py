@@ -6,7 +6,7 @@ from designs import design
 from device import Device
 
 from hostkit.dialect import python_module
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 from hostkit.monitor import Session
 from hostkit.validation import Thresholds, device_parameters
 

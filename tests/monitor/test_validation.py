@@ -10,7 +10,7 @@ from judging import feed, judge
 
 from hostkit.errors import HostkitError
 from hostkit.filters import FILTERS
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 from hostkit.records import AngleTrace
 from hostkit.validation import Thresholds, Validator, device_parameters
 

@@ -11,7 +11,7 @@ from judging import feed
 
 from hostkit.emulation import host_board
 from hostkit.emulation.comparison import FLOAT_TOLERANCE_RAD
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 from hostkit.records import FilterDesign, ValidationReport
 from hostkit.render import FirmwareOptions, generate, write
 from hostkit.targets import TARGETS

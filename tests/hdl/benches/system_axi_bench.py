@@ -12,7 +12,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from uart_line import Listener, send
 
-from hostkit.link.decoder import Decoder
+from hostkit.link.frames.decoder import Decoder
 
 CHOSEN = json.loads(os.environ["SYSTEM_BENCH"])
 PLACE = CHOSEN["addresses"]

@@ -1,0 +1,1 @@
+"""Talking with a device: parameters, commands, who is there."""

@@ -1,0 +1,1 @@
+"""MAVLink frames: taken out of bytes, counted, signed, timed, made."""

@@ -1,0 +1,1 @@
+"""Logs of frames: tlog files, written, indexed and replayed."""

@@ -1,0 +1,1 @@
+"""Ports and what reads them: serial, pseudo-terminal, TCP, UDP."""

@@ -1,0 +1,1 @@
+"""What a session writes: logs of frames, and recordings of samples."""
