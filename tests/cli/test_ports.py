@@ -11,7 +11,7 @@ from device import Device
 from fake_ports import Cable, found_by_pyserial
 
 from hostkit.cli.main import run
-from hostkit.link.ports.finder import finder as ports
+from hostkit.link.ports import finder as ports
 
 DEVICE = Device(design())
 

@@ -13,7 +13,7 @@ import pytest
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
-from hostkit.link.ports.finder import lease
+from hostkit.link.ports import lease
 from hostkit.link.ports.lease import borrow_port, lease_folder, offer_port, socket_path
 from hostkit.link.ports.transport import open_link, open_transport
 

@@ -8,6 +8,7 @@ import pytest
 from fake_ports import Cable, found_by_pyserial, usb
 
 from hostkit.errors import DeviceError
+from hostkit.link.ports import finder as ports
 from hostkit.link.ports.boards import BOARDS, board_of
 from hostkit.link.ports.finder import (
     PortFinder,
@@ -17,7 +18,6 @@ from hostkit.link.ports.finder import (
     port_info,
     with_use,
 )
-from hostkit.link.ports.finder import finder as ports
 from hostkit.link.ports.port_use import access_of, user_of
 
 UNO = usb("/dev/ttyACM0", 0x2341, 0x0043, "5563")

@@ -16,8 +16,8 @@ from device import Device
 from fake_ports import Cable, read_until, wait_until
 
 from hostkit.errors import DeviceError
+from hostkit.link.ports import transport
 from hostkit.link.ports.baud_scan import BaudScan
-from hostkit.link.ports.finder import transport
 from hostkit.link.ports.serial_port import SerialTransport, explain
 from hostkit.link.ports.sockets import SocketTransport, connect, listen
 from hostkit.link.ports.transport import open_link, open_transport
