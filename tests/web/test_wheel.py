@@ -1,8 +1,8 @@
 """The charts' library in what is built from a checkout."""
 
+import shutil
 import subprocess
 import sys
-import tarfile
 import zipfile
 from pathlib import Path
 
@@ -35,8 +35,7 @@ def build(target: str, root: Path, folder: Path) -> tuple[Path, str]:
 def test_a_wheel_has_the_page_with_its_charts_also_when_made_from_an_sdist(tmp_path: Path) -> None:
     need_uplot()
     packed, _ = build("sdist", ROOT, tmp_path / "sdist")
-    with tarfile.open(packed) as archive:
-        archive.extractall(tmp_path / "source", filter="data")
+    shutil.unpack_archive(packed, tmp_path / "source")
     (source,) = (tmp_path / "source").iterdir()
     for name, root in (("checkout", ROOT), ("from_sdist", source)):
         wheel, said = build("wheel", root, tmp_path / name)
