@@ -58,7 +58,7 @@ class Session:
         self.addresses: list[str] = []
         self.url = ""
 
-    def open(self, script: str = "", **options):
+    def open(self, script: str = "", ready: str = "window.hostkit?.samples > 5", **options):
         context = self.browser.new_context(viewport={"width": 1280, "height": 800}, **options)
         context.set_default_timeout(LIMIT_MS)
         page = context.new_page()
@@ -68,7 +68,7 @@ class Session:
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.addresses.append(request.url))
         page.goto(self.url)
-        until(page, "window.hostkit?.samples > 5")
+        until(page, ready)
         return page
 
     def _said(self, kind: str, text: str) -> None:
@@ -383,6 +383,7 @@ def test_a_lost_or_released_port_is_said_across_the_page(session) -> None:
     page = one.open()
     alert = page.get_by_role("alert")
     playwright.expect(alert).to_have_count(0)
+    assert page.locator("#empty").is_hidden()
     for state, words in (
         ("lost", "The port is lost; hostkit tries again."),
         ("released", "The port is released."),
@@ -458,6 +459,22 @@ def test_a_failure_shows_its_reasons(session, monkeypatch) -> None:
     assert page.locator("#reasons li").all_inner_texts() == list(reasons)
     said(page, "#reason", r"^\(1 of 2\) 12 of 4000 .* model$")
     assert page.title() == "FAIL · hostkit monitor"
+    box, last = page.locator("#figures").bounding_box(), page.locator("#reasons li").last
+    assert last.bounding_box()["y"] < box["y"] < 800
+    said(page, "#marks-said", "integer model")
+    playwright.expect(page.locator("#marks-said")).to_be_visible(timeout=LIMIT_MS)
+
+
+def test_without_samples_the_page_says_why(session, monkeypatch) -> None:
+    reason = "the device runs design 0123456789ab"
+    refused = replace(report(0), verdict="refused", digest_ok=False, reasons=(reason,))
+    monkeypatch.setattr("fake_session.report", lambda samples=0: refused)
+    page = session(rate_hz=0.01).open(ready="document.title.startsWith('REFUSED')")
+    said(page, "#empty", f"^Nothing to draw: {reason}$")
+    playwright.expect(page.locator("#empty")).to_be_visible()
+    assert page.evaluate("document.body.dataset.samples") == "none"
+    facts = page.locator(".facts")
+    assert facts.evaluate("(box) => box.scrollWidth <= box.clientWidth")
 
 
 KEEP_SOURCE = """

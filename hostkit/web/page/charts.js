@@ -160,7 +160,7 @@ export class Charts {
     const { ctx } = plot;
     ctx.save();
     ctx.fillStyle = this.colours.bad;
-    for (const x of this.rows.mismatches.slice(-500)) {
+    for (const x of this.rows.mismatches) {
       const at = plot.valToPos(x, "x", true);
       if (at >= left && at <= left + width) ctx.fillRect(at - 1, top + height - 10, 3, 10);
     }

@@ -5,6 +5,7 @@ import { Banner, say } from "./banner.js";
 import { Charts } from "./charts.js";
 import { Commands } from "./commands.js";
 import { byId, text } from "./dom.js";
+import { showEmpty } from "./empty.js";
 import { showDevice, showFigures, showLink } from "./health.js";
 import { Horizon } from "./horizon.js";
 import { startDrag, startKeys } from "./keys.js";
@@ -79,6 +80,7 @@ class Page {
   snapshot(snapshot) {
     showHead(snapshot);
     this.banner.showPort(snapshot);
+    showEmpty(snapshot, this.store.length);
     showFigures(snapshot.report);
     showLink(snapshot);
     showDevice(snapshot.device);
@@ -94,8 +96,12 @@ class Page {
   paint() {
     this.horizon.show(this.store.latest());
     this.scrolling.show();
-    if (this.charts) this.charts.draw();
-    else this.drawn();
+    if (!this.charts) {
+      this.drawn();
+      return;
+    }
+    this.charts.draw();
+    byId("marks-said").hidden = !this.charts.rows.mismatches.length;
   }
 
   drawn() {
