@@ -213,7 +213,7 @@ def test_a_page_stays_after_a_replay_until_it_is_told_to_end(folder: Path) -> No
             assert page.status == 200
         for name in ("pi.local", "bench.local"):
             named = {"Host": f"{name}:{place.port}"}
-            with opener.open(urllib.request.Request(url, headers=named)) as page:  # noqa: S310
+            with opener.open(urllib.request.Request(url, headers=named)) as page:
                 assert page.status == 200
         report_url = f"{place.scheme}://{place.netloc}/report.json"
         deadline_s = time.monotonic() + PATIENCE_S

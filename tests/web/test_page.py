@@ -583,6 +583,7 @@ def test_no_line_is_drawn_where_an_angle_wraps(session) -> None:
     assert beside["gaps"] > 5
     assert beside["others"] == 1
 
+
 def test_without_uplot_the_page_says_so_and_works(session, monkeypatch) -> None:
     monkeypatch.setattr(files, "VENDOR_FOLDERS", ("nowhere",))
     one = session()
