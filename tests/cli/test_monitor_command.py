@@ -169,9 +169,16 @@ def wait_for_size(path: Path, size: int, child: subprocess.Popen) -> None:
         time.sleep(0.02)
 
 
-def started(*arguments: str) -> subprocess.Popen:
+@contextlib.contextmanager
+def started(*arguments: str) -> Iterator[subprocess.Popen]:
+    """Run hostkit; a failure inside does not wait for its end."""
     command = [sys.executable, "-m", "hostkit", *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as child:
+        try:
+            yield child
+        finally:
+            child.kill()
 
 
 def test_a_recorder_that_is_killed_leaves_what_it_wrote(folder: Path, board: Board) -> None:
