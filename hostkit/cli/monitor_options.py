@@ -17,6 +17,7 @@ CHOSEN: Final = "hostkit.monitor"
 FILE_PREFIX: Final = "file:"
 BAUD_LIMITS: Final = (300, 12_000_000)
 SLOWEST, FASTEST = 0.01, 1000.0
+_FILE: Final = click.Path(dir_okay=False, path_type=Path)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +60,7 @@ class MonitorChoice:
     web: bool = False
     web_host: str | None = None
     web_allow_remote: bool = False
+    web_allow_hosts: tuple[str, ...] = ()
     web_port: int = 0
     no_browser: bool = False
 
@@ -101,8 +103,8 @@ class MonitorChoice:
         """
         if self.file is None and (self.speed is not None or self.seek_s is not None):
             raise click.UsageError("--speed and --seek are for files; give --port file:F.tlog")
-        of_page = self.web_host or self.web_allow_remote or self.web_port or self.no_browser
-        if of_page and not self.web:
+        served = self.web_host or self.web_allow_remote or self.web_allow_hosts or self.web_port
+        if (served or self.no_browser) and not self.web:
             raise click.UsageError("--web-... and --no-browser need --web")
 
 
@@ -240,7 +242,7 @@ _OUTPUTS = (
         "--record",
         "records",
         multiple=True,
-        type=click.Path(dir_okay=False, path_type=Path),
+        type=_FILE,
         metavar="F",
         help="Keep what is received: all of it in F.tlog, the samples in F.csv or F.npz; may be "
         "given again.",
@@ -259,18 +261,8 @@ _OUTPUTS = (
         metavar="HOST:PORT",
         help="Send every sample as JSON, as PlotJuggler reads it; may be given again.",
     ),
-    _option(
-        "--report",
-        type=click.Path(dir_okay=False, path_type=Path),
-        metavar="F.html",
-        help="Write a report.",
-    ),
-    _option(
-        "--junit",
-        type=click.Path(dir_okay=False, path_type=Path),
-        metavar="F.xml",
-        help="Write the verdict for a build server.",
-    ),
+    _option("--report", type=_FILE, metavar="F.html", help="Write a report."),
+    _option("--junit", type=_FILE, metavar="F.xml", help="Write the verdict for a build server."),
 )
 _WEB = (
     _option("--web", is_flag=True, help="Show a page in the browser."),
@@ -283,6 +275,13 @@ _WEB = (
         "--web-allow-remote",
         is_flag=True,
         help="Serve at an address that other machines reach; there is no encryption.",
+    ),
+    _option(
+        "--web-allow-host",
+        "web_allow_hosts",
+        multiple=True,
+        metavar="NAME",
+        help="A further name of this machine that browsers may use; may be given again.",
     ),
     _option(
         "--web-port",

@@ -134,6 +134,7 @@ def serve_page(session: Session, choice: MonitorChoice, stack: contextlib.ExitSt
         host=choice.web_host or "127.0.0.1",
         port=choice.web_port,
         allow_remote=choice.web_allow_remote,
+        allowed_hosts=choice.web_allow_hosts,
     )
     if server.warning:
         say(f"hostkit: {server.warning}")

@@ -3,6 +3,7 @@
 import errno
 import ipaddress
 import os
+import re
 import socket
 from collections.abc import Iterable
 
@@ -11,6 +12,8 @@ from hostkit.web.security import LOOPBACK_NAMES, host_name
 
 SEND_BUFFER_BYTES = 262144
 """What the kernel holds for a page that does not read: a bound on how far it can fall behind."""
+
+NAME = r"[\w.-]+|\[[0-9a-f:.]+\]"
 
 
 def listen(host: str, port: int, *, allow_remote: bool = False) -> socket.socket:
@@ -60,7 +63,13 @@ def _bound(
 
 
 def names(address: str, allowed: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of a server at an address, the best to show first, without ports."""
+    """Return the names of a server at an address, the best to show first, without ports.
+
+    Raises
+    ------
+    HostkitError
+        If one of the allowed is no name.
+    """
     further = tuple(_name(host) for host in allowed)
     if is_any(address):
         return (*further, *LOOPBACK_NAMES, _name(socket.gethostname()))
@@ -74,4 +83,7 @@ def is_any(address: str) -> bool:
 
 def _name(host: str) -> str:
     bare_ipv6 = host.count(":") > 1 and not host.startswith("[")
-    return f"[{host}]".lower() if bare_ipv6 else host_name(host)
+    name = f"[{host}]".lower() if bare_ipv6 else host_name(host)
+    if not re.fullmatch(NAME, name):
+        raise HostkitError(f"{host!r} is no host name; such as bench.local would be one")
+    return name

@@ -138,7 +138,7 @@ class Guard:
         name = host_name(hosts[0])
         if name in self._access.hosts or (self._access.any_address and is_address(name)):
             return None
-        return failure(421, "the server is not known by this name")
+        return failure(421, "not a name of this server; --web-allow-host NAME adds one")
 
     def _foreign_origin(self, scope: Scope, headers: Headers) -> ASGIApp | None:
         host = headers["host"].lower()

@@ -81,6 +81,7 @@ def test_a_replay_from_the_middle_at_speed(folder: Path, capsys) -> None:
     [
         (["--port", "tcp:x:1", "--speed", "2"], "--speed and --seek are for files"),
         (["--port", "file:a.tlog", "--no-browser"], "need --web"),
+        (["--port", "file:a.tlog", "--web-allow-host", "pi.local"], "need --web"),
         (["--port", "file:a.tlog", "--baud", "12"], "neither auto nor a number"),
         (["--port", "file:a.tlog", "--max-rms-deg", "nan"], "finite"),
     ],
@@ -168,9 +169,16 @@ def wait_for_size(path: Path, size: int, child: subprocess.Popen) -> None:
         time.sleep(0.02)
 
 
-def started(*arguments: str) -> subprocess.Popen:
+@contextlib.contextmanager
+def started(*arguments: str) -> Iterator[subprocess.Popen]:
+    """Run hostkit; a failure inside does not wait for its end."""
     command = [sys.executable, "-m", "hostkit", *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as child:
+        try:
+            yield child
+        finally:
+            child.kill()
 
 
 def test_a_recorder_that_is_killed_leaves_what_it_wrote(folder: Path, board: Board) -> None:
@@ -202,13 +210,18 @@ def test_a_signal_ends_with_a_verdict_and_whole_files(folder, board: Board, numb
 
 def test_a_page_stays_after_a_replay_until_it_is_told_to_end(folder: Path) -> None:
     arguments = ("monitor", "design.json", "--port", "file:a.tlog", "--web", "--no-browser")
-    with started(*arguments, "--speed", "1000", "--json") as child:
+    names = ("--web-allow-host", "pi.local", "--web-allow-host", "bench.local")
+    with started(*arguments, *names, "--speed", "1000", "--json") as child:
         assert child.stderr is not None
         url = next(line for line in child.stderr if "?token=" in line).split()[-1]
         opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
         place = urllib.parse.urlsplit(url)
         with opener.open(url, timeout=PATIENCE_S) as page:
             assert page.status == 200
+        for name in ("pi.local", "bench.local"):
+            named = {"Host": f"{name}:{place.port}"}
+            with opener.open(urllib.request.Request(url, headers=named)) as page:
+                assert page.status == 200
         report_url = f"{place.scheme}://{place.netloc}/report.json"
         deadline_s = time.monotonic() + PATIENCE_S
         samples = 0

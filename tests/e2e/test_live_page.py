@@ -14,6 +14,7 @@ from station import GroundStation, require_station
 from hostkit.filters.complementary import tau_from_eta
 
 NEW_TAU_S = 1.5
+LOST = "The port is lost; hostkit tries again."
 SWING_DEG = 3.0
 """The played motion swings by more."""
 
@@ -144,8 +145,11 @@ def mismatches(page) -> int:
 def unplugs_and_plugs_again(page, cable: Relay) -> None:
     cable.unplug()
     until(page, lambda: shown(page, "#port-state").lower() == "lost", "a lost port")
+    banner = page.get_by_role("alert")
+    until(page, lambda: banner.all_inner_texts() == [LOST], "a banner that says so")
     cable.plug()
     until(page, lambda: shown(page, "#port-state").lower() == "connected", "the port again")
+    until(page, lambda: banner.count() == 0, "the end of the banner")
     sees_more(page, 100)
     assert re.search("[1-9]", shown(page, "#reconnects"))
 

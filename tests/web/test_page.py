@@ -58,7 +58,7 @@ class Session:
         self.addresses: list[str] = []
         self.url = ""
 
-    def open(self, script: str = "", **options):
+    def open(self, script: str = "", ready: str = "window.hostkit?.samples > 5", **options):
         context = self.browser.new_context(viewport={"width": 1280, "height": 800}, **options)
         context.set_default_timeout(LIMIT_MS)
         page = context.new_page()
@@ -68,7 +68,7 @@ class Session:
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.addresses.append(request.url))
         page.goto(self.url)
-        until(page, "window.hostkit?.samples > 5")
+        until(page, ready)
         return page
 
     def _said(self, kind: str, text: str) -> None:
@@ -302,6 +302,7 @@ CONTROLS = """(wrong) => [...document.querySelectorAll("a[href], button, input, 
 @pytest.mark.parametrize("replayed", [False, True])
 def test_every_control_has_a_name_and_the_keyboard_reaches_it(session, replayed: bool) -> None:
     page = session(replayed=replayed).open()
+    until(page, "document.querySelector('form.parameter')")  # what snapshots add is there
 
     def controls(wrong: str) -> list[str]:
         return page.evaluate(f"({CONTROLS})({wrong})")
@@ -377,6 +378,24 @@ def test_nothing_is_drawn_while_nobody_looks(session) -> None:
     until(page, f"window.hostkit.frames > {frames + 2}")
 
 
+def test_a_lost_or_released_port_is_said_across_the_page(session) -> None:
+    one = session()
+    page = one.open()
+    alert = page.get_by_role("alert")
+    playwright.expect(alert).to_have_count(0)
+    assert page.locator("#empty").is_hidden()
+    for state, words in (
+        ("lost", "The port is lost; hostkit tries again."),
+        ("released", "The port is released."),
+    ):
+        one.controls.change(port_state=state)
+        playwright.expect(alert).to_have_text(words, timeout=LIMIT_MS)
+        size = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+        assert page.evaluate(size) == [1280, 800]
+        one.controls.change(port_state="connected")
+        playwright.expect(alert).to_have_count(0, timeout=LIMIT_MS)
+
+
 def test_two_browsers_at_once(session) -> None:
     one = session()
     first, second = one.open(), one.open()
@@ -440,6 +459,22 @@ def test_a_failure_shows_its_reasons(session, monkeypatch) -> None:
     assert page.locator("#reasons li").all_inner_texts() == list(reasons)
     said(page, "#reason", r"^\(1 of 2\) 12 of 4000 .* model$")
     assert page.title() == "FAIL · hostkit monitor"
+    box, last = page.locator("#figures").bounding_box(), page.locator("#reasons li").last
+    assert last.bounding_box()["y"] < box["y"] < 800
+    said(page, "#marks-said", "integer model")
+    playwright.expect(page.locator("#marks-said")).to_be_visible(timeout=LIMIT_MS)
+
+
+def test_without_samples_the_page_says_why(session, monkeypatch) -> None:
+    reason = "the device runs design 0123456789ab"
+    refused = replace(report(0), verdict="refused", digest_ok=False, reasons=(reason,))
+    monkeypatch.setattr("fake_session.report", lambda samples=0: refused)
+    page = session(rate_hz=0.01).open(ready="document.title.startsWith('REFUSED')")
+    said(page, "#empty", f"^Nothing to draw: {reason}$")
+    playwright.expect(page.locator("#empty")).to_be_visible()
+    assert page.evaluate("document.body.dataset.samples") == "none"
+    facts = page.locator(".facts")
+    assert facts.evaluate("(box) => box.scrollWidth <= box.clientWidth")
 
 
 KEEP_SOURCE = """
@@ -472,11 +507,13 @@ STORE = """async (events) => {
       store.rejoin();
       continue;
     }
+    const given = event.roll ?? {};
     event.t ??= Array.from({ length: event.count }, (_, i) => i / 1000);
     const zeros = event.t.map(() => 0);
     const line = Object.assign([...zeros], event.spikes ?? {});
     store.append({
-      begins: zeros, mismatch: zeros, roll: { device: line, model: line, residual: line }, ...event,
+      begins: zeros, mismatch: zeros, ...event,
+      roll: { device: line, model: line, residual: line, ...given },
     });
   }
   const seen = { total: store.total, length: store.length, last: store.lastX };
@@ -485,8 +522,14 @@ STORE = """async (events) => {
   const rows = new Rows(3).fill(store, store.firstX, store.lastX, 100);
   seen.rows = rows.x.length;
   seen.gaps = rows.lines[0].filter((value) => value === null).length;
-  seen.most = Math.max(...rows.lines[0]);
-  seen.least = Math.min(...rows.lines[0]);
+  seen.others = rows.lines[1].filter((value) => value === null).length;
+  seen.most = Math.max(...rows.lines[0].filter((value) => value !== undefined));
+  seen.least = Math.min(...rows.lines[0].filter((value) => value !== undefined));
+  seen.steps = rows.lines.map((line) => {
+    const drawn = line.filter((value) => value !== undefined);
+    const up = (i) => drawn[i] === null || drawn[i - 1] === null;
+    return Math.max(...drawn.map((value, i) => (!i || up(i) ? 0 : Math.abs(value - drawn[i - 1]))));
+  });
   return seen;
 }"""
 
@@ -514,6 +557,31 @@ def test_the_store_keeps_time_rising_and_draws_extremes(session) -> None:
     assert (dense["total"], dense["length"]) == (70_000, 60_000)
     assert (dense["most"], dense["least"]) == (7.0, -9.0)
     assert dense["rows"] < 220
+
+
+def test_no_line_is_drawn_where_an_angle_wraps(session) -> None:
+    page = session().open()
+
+    def steps(*angles: float, **lines):
+        count = len(angles)
+        event = {"epoch": 0, "t": [k / 1000 for k in range(count)]}
+        event["roll"] = {"device": angles, "model": angles, "residual": [0.0] * count, **lines}
+        return page.evaluate(STORE, [event])
+
+    def wrapped(degrees: float) -> float:
+        return (degrees + 180.0) % 360.0 - 180.0
+
+    turning = [wrapped(0.2 * k) for k in range(9000)]
+    shaking = [wrapped(180.0 + 5.0 * (-1) ** k + 0.001 * k) for k in range(9000)]
+    for angles in (turning, turning[::-1], shaking, turning[:150], shaking[:150]):
+        seen = steps(*angles)
+        assert max(seen["steps"]) < 60.0
+        assert (seen["most"], seen["least"]) == pytest.approx((max(angles), min(angles)), abs=1e-4)
+        assert seen["rows"] <= 600
+    # The line of an angle that does not wrap goes on beside one that does.
+    beside = steps(*turning, model=[0.0] * 9000)
+    assert beside["gaps"] > 5
+    assert beside["others"] == 1
 
 
 def test_without_uplot_the_page_says_so_and_works(session, monkeypatch) -> None:

@@ -238,6 +238,7 @@ def test_other_machines_can_be_let_in(tmp_path: Path) -> None:
         for host in ("evil.example", "192.0.2.7.evil.example", "2001:db8::7", "[192.0.2.7]", "[]"):
             reply = httpx.get(address, headers={"host": f"{host}:{s.port}"})
             assert reply.status_code == 421
+            assert "--web-allow-host NAME adds one" in reply.json()["error"]
     finally:
         s.stop()
 
@@ -263,6 +264,12 @@ def test_names(
 ) -> None:
     monkeypatch.setattr(socket, "gethostname", lambda: "Bench")
     assert binding.names(address, allowed) == expected
+
+
+@pytest.mark.parametrize("name", ["", "http://bench.local/", "two names", "*.local", "[x]", "a\nb"])
+def test_what_is_no_name_is_refused(name: str) -> None:
+    with pytest.raises(HostkitError, match="is no host name"):
+        binding.names("127.0.0.1", (name,))
 
 
 def has_ipv6() -> bool:

@@ -23,6 +23,23 @@ function steadyRange(least) {
   };
 }
 
+/** A line that is not drawn over nulls; uPlot would draw it and cut out less than its width. */
+function strokes(plot, series, first, last) {
+  const stroke = new Path2D();
+  let down = false;
+  for (let i = first; i <= last; i++) {
+    const value = plot.data[series][i];
+    if (typeof value === "number") {
+      const x = plot.valToPos(plot.data[0][i], "x", true);
+      const y = plot.valToPos(value, "y", true);
+      if (!down) stroke.moveTo(x - 0.5, y); // so that a sample on its own is seen
+      stroke.lineTo(x, y);
+    }
+    down = value !== null && (down || value !== undefined);
+  }
+  return { stroke };
+}
+
 export class Charts {
   /** `cursor` gets the sample under the pointer, or null; `drawn` is called after a picture. */
   constructor(uPlot, { store, view, boxes, cursor, drawn }) {
@@ -71,6 +88,7 @@ export class Charts {
       width: model ? 1.25 : kind === "device" ? 3 : 1.25,
       dash: model ? [6, 6] : undefined,
       points: { show: false },
+      paths: strokes,
     };
   }
 
@@ -142,7 +160,7 @@ export class Charts {
     const { ctx } = plot;
     ctx.save();
     ctx.fillStyle = this.colours.bad;
-    for (const x of this.rows.mismatches.slice(-500)) {
+    for (const x of this.rows.mismatches) {
       const at = plot.valToPos(x, "x", true);
       if (at >= left && at <= left + width) ctx.fillRect(at - 1, top + height - 10, 3, 10);
     }

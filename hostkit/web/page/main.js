@@ -1,9 +1,11 @@
 // Puts the page together: samples go to the store, snapshots to the panels, and both to the eye.
 
 import { session } from "./api.js";
+import { Banner, say } from "./banner.js";
 import { Charts } from "./charts.js";
 import { Commands } from "./commands.js";
 import { byId, text } from "./dom.js";
+import { showEmpty } from "./empty.js";
 import { showDevice, showFigures, showLink } from "./health.js";
 import { Horizon } from "./horizon.js";
 import { startDrag, startKeys } from "./keys.js";
@@ -27,12 +29,6 @@ const LATENCIES = 1000;
 const seen = { frames: 0, samples: 0, latencyMs: [] };
 window.hostkit = seen;
 
-function banner(said) {
-  const node = byId("banner");
-  text(node, said);
-  node.hidden = !said;
-}
-
 class Page {
   constructor(info, uPlot) {
     const axes = [...info.axes];
@@ -43,6 +39,7 @@ class Page {
     this.scrolling = new Scrolling(this.view, this.store);
     this.horizon = new Horizon(axes);
     this.legend = new Legend(axes);
+    this.banner = new Banner();
     this.panels = {
       parameters: new Parameters(),
       tau: new Tau(info.rate_hz),
@@ -82,6 +79,8 @@ class Page {
 
   snapshot(snapshot) {
     showHead(snapshot);
+    this.banner.showPort(snapshot);
+    showEmpty(snapshot, this.store.length);
     showFigures(snapshot.report);
     showLink(snapshot);
     showDevice(snapshot.device);
@@ -97,8 +96,12 @@ class Page {
   paint() {
     this.horizon.show(this.store.latest());
     this.scrolling.show();
-    if (this.charts) this.charts.draw();
-    else this.drawn();
+    if (!this.charts) {
+      this.drawn();
+      return;
+    }
+    this.charts.draw();
+    byId("marks-said").hidden = !this.charts.rows.mismatches.length;
   }
 
   drawn() {
@@ -110,15 +113,8 @@ class Page {
   }
 
   state(state) {
-    if (state === "open") {
-      this.store.rejoin();
-      banner("");
-    } else if (state === "lost") {
-      banner("No connection to hostkit: the figures below are old. Trying again …");
-    } else {
-      banner("The session has ended. The figures are final.");
-    }
-    document.body.dataset.stream = state;
+    if (state === "open") this.store.rejoin();
+    this.banner.showStream(state);
   }
 
   recolour() { this.charts?.recolour(); }
@@ -139,7 +135,7 @@ async function start() {
     const [{ info }, uPlot] = await Promise.all([session(), charting()]);
     page = new Page(info, uPlot);
   } catch (error) {
-    banner(`This page cannot start: ${error.message}`);
+    say(`This page cannot start: ${error.message}`);
     return;
   }
   new Stream({

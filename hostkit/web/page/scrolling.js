@@ -28,7 +28,6 @@ export class Scrolling {
     slider.min = first;
     slider.max = store.lastX;
     slider.value = view.to;
-    slider.disabled = store.lastX - first < 0.1;
     const behind = store.lastX - view.to;
     const said = view.live ? "live" : `${fixed(behind, 1)} s behind`;
     text(byId("scroll-said"), said);
