@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from hostkit.link.clock import Clock, now_ns
 from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.logs.replay import ReplayTransport
 from hostkit.link.ports.pump import Pump
 from hostkit.link.ports.transport import Transport
 from hostkit.link.statistics import LinkStatistics
@@ -75,15 +76,22 @@ class Receiver:
 
     def _decode(self, data: bytes) -> list[Frame]:
         """Decode bytes piece by piece, where it is known when the pieces came."""
-        arrivals = self._transport.arrivals if isinstance(self._transport, Pump) else ()
-        if not arrivals:
-            return self.decoder.feed(data, now_ns(self._clock))
         frames: list[Frame] = []
         begin = 0
-        for arrival in arrivals:
-            frames += self.decoder.feed(data[begin : arrival.end], arrival.received_ns)
-            begin = arrival.end
+        for end, received_ns, recorded_us in self._pieces(data):
+            frames += self.decoder.feed(data[begin:end], received_ns, recorded_us)
+            begin = end
         return frames
+
+    def _pieces(self, data: bytes) -> list[tuple[int, int, int]]:
+        """Return of each piece where it ends, when it came, and when it did when recorded."""
+        transport = self._transport
+        if isinstance(transport, Pump) and transport.arrivals:
+            return [(arrival.end, arrival.received_ns, 0) for arrival in transport.arrivals]
+        now = now_ns(self._clock)
+        if isinstance(transport, ReplayTransport) and transport.stamps:
+            return [(end, now, time_us) for end, time_us in transport.stamps]
+        return [(len(data), now, 0)]
 
     def _follow_port(self) -> bool:
         """Compare the port with what it was; tell whether it was opened anew."""
