@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from hostkit.link.clock import Clock, now_ns
 from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.frames.signing import SigningKey
 from hostkit.link.logs.replay import ReplayTransport
 from hostkit.link.ports.pump import Pump
 from hostkit.link.ports.transport import Transport
@@ -11,7 +12,7 @@ from hostkit.link.statistics import LinkStatistics
 from hostkit.monitor.notices import Notices
 
 HEARD_BYTES = 512
-"""What is kept of the first bytes, to say what they are."""
+"""What is kept of bytes that hold no frame, to say what they are."""
 
 TEXT_SHARE = 0.9
 """Share of printable bytes from which on noise is taken for text."""
@@ -35,6 +36,13 @@ class Received:
     lost_some: bool = False
 
 
+def decoder_for(transport: Transport, signing: SigningKey | None) -> Decoder:
+    """Return a decoder for a transport; the signatures in a file may be of any time."""
+    if signing is not None and not transport.live:
+        signing = signing.for_replay()
+    return Decoder(signing)
+
+
 class Receiver:
     """A transport with its decoder; says in notices what becomes of the port.
 
@@ -43,7 +51,7 @@ class Receiver:
     reconnects
         How often a lost port came back.
     heard
-        The first bytes that came, as long as nobody says that they were understood.
+        The latest bytes that came before the first frame.
     """
 
     def __init__(
