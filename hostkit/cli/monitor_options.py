@@ -9,6 +9,7 @@ import click
 from hostkit.cli.chosen import Command
 from hostkit.cli.inputs import finite
 from hostkit.link.frames.signing import SigningKey
+from hostkit.monitor.controls import SPEEDS
 from hostkit.records import FilterDesign
 from hostkit.targets.atmega328p import ATMEGA328P
 from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thresholds
@@ -16,7 +17,6 @@ from hostkit.validation import DEFAULT_MAX_LOST_SHARE, DEFAULT_MAX_RMS_DEG, Thre
 CHOSEN: Final = "hostkit.monitor"
 FILE_PREFIX: Final = "file:"
 BAUD_LIMITS: Final = (300, 12_000_000)
-SLOWEST, FASTEST = 0.01, 1000.0
 _FILE: Final = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -200,7 +200,7 @@ _REPLAY = (
     _option("--passive", is_flag=True, help="Send nothing to the device."),
     _option(
         "--speed",
-        type=click.FloatRange(SLOWEST, FASTEST),
+        type=click.FloatRange(*SPEEDS),
         callback=_finite_note,
         metavar="X",
         help="Replay a file so many times as fast as it was; by default as fast as it can be "

@@ -16,6 +16,7 @@ from hostkit.cli.params_output import (
     show_entries,
     show_outcomes,
 )
+from hostkit.cli.params_secret import secret
 from hostkit.errors import HostkitError
 from hostkit.link.device.device_link import DeviceLink, SettingOutcome
 from hostkit.link.device.parameter_compare import Difference, differences
@@ -43,6 +44,7 @@ def params() -> None:
       hostkit params set FILT_TAU=1.5 --port /dev/ttyUSB0 --store
       hostkit params save bench.parm --port /dev/ttyUSB0
       hostkit params diff bench.parm --port /dev/ttyUSB0
+      hostkit params secret bench.key --new --port /dev/ttyUSB0
     """
 
 
@@ -169,6 +171,9 @@ def diff(file: Path, as_json: bool) -> None:
     if found:
         names = ", ".join(difference.name for difference in found)
         raise HostkitError(f"the device and {file} differ in {len(found)}: {names}")
+
+
+params.add_command(secret)
 
 
 def _shown(choice: LinkChoice, link: DeviceLink) -> Shown:

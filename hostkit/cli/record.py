@@ -61,8 +61,6 @@ def record(outputs: tuple[Path, ...], design_file: Path | None, as_json: bool) -
         transport = open_port(choice)
         stack.callback(transport.close)
         recorders = open_recorders(outputs, design, choice.system, stack)
-        if signing is not None and not transport.live:
-            signing = signing.for_replay()
         capture = Capture(
             transport,
             recorders,

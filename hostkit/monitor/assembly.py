@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from functools import partial
 
 from hostkit.link.clock import Clock, now_ns
-from hostkit.link.frames.decoder import Decoder
 from hostkit.link.frames.encoder import Encoder
 from hostkit.link.frames.timesync import TimeSync
 from hostkit.link.ports.transport import Transport
@@ -13,7 +12,7 @@ from hostkit.monitor.judge import Judge
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.parts import Parts, SessionOptions
-from hostkit.monitor.receiver import Receiver
+from hostkit.monitor.receiver import Receiver, decoder_for
 from hostkit.monitor.recording.recordings import Recorder, Recordings
 from hostkit.monitor.recording.sample_files import open_recorder
 from hostkit.records import FilterDesign
@@ -33,7 +32,6 @@ def assemble(
     """Return the parts of a session; a recorded device is only listened to."""
     notices, key = Notices(clock), options.signing
     silent = options.passive or not transport.live
-    decoder = Decoder(key if key is None or transport.live else key.for_replay())
     validator = Validator(
         design, tolerance_rad=options.tolerance_rad, as_designed=options.as_designed
     )
@@ -41,12 +39,11 @@ def assemble(
         design, validator, notices, system=options.system, as_designed=options.as_designed
     )
     return Parts(
-        design=design,
         thresholds=thresholds,
         transport=transport,
         clock=clock,
         notices=notices,
-        receiver=Receiver(transport, decoder, clock, notices),
+        receiver=Receiver(transport, decoder_for(transport, key), clock, notices),
         validator=validator,
         judge=judge,
         conversation=Conversation(transport, Encoder(key), clock, notices, design, silent=silent),

@@ -2,48 +2,14 @@
 
 import math
 from collections.abc import Callable
-from typing import Protocol
 
 from hostkit.errors import HostkitError
 from hostkit.monitor.inbox import Inbox
+from hostkit.monitor.requests import SessionRequests
 from hostkit.monitor.snapshot import ParameterState, SessionInfo, Snapshot
 
 COMMANDS = ("calibrate", "self-test", "store", "defaults", "reboot")
 SPEEDS = (0.01, 1000.0)
-
-
-class Requests(Protocol):
-    """What a session can do, each called in its own thread."""
-
-    def on_parameter(self, name: str, value: float) -> None:
-        """Ask the device to use a value."""
-
-    def on_revert(self) -> None:
-        """Ask the device for the design's values."""
-
-    def on_command(self, name: str) -> None:
-        """Send a command."""
-
-    def on_start_recording(self, name: str) -> None:
-        """Begin a file."""
-
-    def on_stop_recording(self) -> None:
-        """Finish it."""
-
-    def on_port(self, take: bool) -> None:
-        """Release the port or take it again."""
-
-    def on_restart(self) -> None:
-        """Judge anew."""
-
-    def on_pause(self, paused: bool) -> None:
-        """Hold the replay."""
-
-    def on_seek(self, position_s: float) -> None:
-        """Replay from elsewhere."""
-
-    def on_speed(self, speed: float | None) -> None:
-        """Replay at another speed."""
 
 
 class SessionControls:
@@ -52,7 +18,7 @@ class SessionControls:
     Parameters
     ----------
     requests
-        The session.
+        What carries them out in the session's thread.
     inbox
         Where requests wait for it.
     info
@@ -65,7 +31,7 @@ class SessionControls:
 
     def __init__(
         self,
-        requests: Requests,
+        requests: SessionRequests,
         inbox: Inbox,
         info: SessionInfo,
         latest: Callable[[], Snapshot],

@@ -33,11 +33,6 @@ class Conversation:
     ----------
     silent
         Whether nothing at all is sent.
-
-    Attributes
-    ----------
-    told
-        Names of the filter's parameters, which the models follow.
     """
 
     def __init__(

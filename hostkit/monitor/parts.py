@@ -65,7 +65,6 @@ class SessionOptions:
 class Parts:
     """The parts of a running session."""
 
-    design: FilterDesign
     thresholds: Thresholds
     transport: Transport
     clock: Clock

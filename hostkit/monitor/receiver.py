@@ -4,13 +4,15 @@ from dataclasses import dataclass, replace
 
 from hostkit.link.clock import Clock, now_ns
 from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.frames.signing import SigningKey
+from hostkit.link.logs.replay import ReplayTransport
 from hostkit.link.ports.pump import Pump
 from hostkit.link.ports.transport import Transport
 from hostkit.link.statistics import LinkStatistics
 from hostkit.monitor.notices import Notices
 
 HEARD_BYTES = 512
-"""What is kept of the first bytes, to say what they are."""
+"""What is kept of bytes that hold no frame, to say what they are."""
 
 TEXT_SHARE = 0.9
 """Share of printable bytes from which on noise is taken for text."""
@@ -34,6 +36,13 @@ class Received:
     lost_some: bool = False
 
 
+def decoder_for(transport: Transport, signing: SigningKey | None) -> Decoder:
+    """Return a decoder for a transport; the signatures in a file may be of any time."""
+    if signing is not None and not transport.live:
+        signing = signing.for_replay()
+    return Decoder(signing)
+
+
 class Receiver:
     """A transport with its decoder; says in notices what becomes of the port.
 
@@ -42,7 +51,7 @@ class Receiver:
     reconnects
         How often a lost port came back.
     heard
-        The first bytes that came, as long as nobody says that they were understood.
+        The latest bytes that came before the first frame.
     """
 
     def __init__(
@@ -75,15 +84,22 @@ class Receiver:
 
     def _decode(self, data: bytes) -> list[Frame]:
         """Decode bytes piece by piece, where it is known when the pieces came."""
-        arrivals = self._transport.arrivals if isinstance(self._transport, Pump) else ()
-        if not arrivals:
-            return self.decoder.feed(data, now_ns(self._clock))
         frames: list[Frame] = []
         begin = 0
-        for arrival in arrivals:
-            frames += self.decoder.feed(data[begin : arrival.end], arrival.received_ns)
-            begin = arrival.end
+        for end, received_ns, recorded_us in self._pieces(data):
+            frames += self.decoder.feed(data[begin:end], received_ns, recorded_us)
+            begin = end
         return frames
+
+    def _pieces(self, data: bytes) -> list[tuple[int, int, int]]:
+        """Return of each piece where it ends, when it came, and when it did when recorded."""
+        transport = self._transport
+        if isinstance(transport, Pump) and transport.arrivals:
+            return [(arrival.end, arrival.received_ns, 0) for arrival in transport.arrivals]
+        now = now_ns(self._clock)
+        if isinstance(transport, ReplayTransport) and transport.stamps:
+            return [(end, now, time_us) for end, time_us in transport.stamps]
+        return [(len(data), now, 0)]
 
     def _follow_port(self) -> bool:
         """Compare the port with what it was; tell whether it was opened anew."""

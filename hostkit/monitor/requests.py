@@ -1,21 +1,10 @@
 """Carrying out what views ask of a session, in its own thread."""
 
 from collections.abc import Callable
-from typing import Protocol, runtime_checkable
 
 from hostkit.errors import HostkitError
+from hostkit.link.ports.lease import LeasablePort
 from hostkit.monitor.parts import Parts
-
-
-@runtime_checkable
-class Releasable(Protocol):
-    """A port that another program may have for a while."""
-
-    def release(self) -> None:
-        """Close it."""
-
-    def take(self) -> None:
-        """Open it again."""
 
 
 class SessionRequests:
@@ -55,7 +44,7 @@ class SessionRequests:
     def on_port(self, take: bool) -> None:
         """Release the port or take it again."""
         port = self._parts.transport
-        if not isinstance(port, Releasable):
+        if not isinstance(port, LeasablePort):
             self._parts.notices.add("error", "this port cannot be released")
             return
         try:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock, SystemClock, epoch_us
-from hostkit.link.frames.decoder import Decoder, Frame
+from hostkit.link.frames.decoder import Frame
 from hostkit.link.ports.transport import Transport
 from hostkit.monitor.assembly import assemble
 from hostkit.monitor.collect import JitterCollector, OverlayCollector
@@ -15,7 +15,7 @@ from hostkit.monitor.inbox import Inbox
 from hostkit.monitor.judge import Stretch
 from hostkit.monitor.outlets import Outlets
 from hostkit.monitor.parts import Parts, SessionOptions, session_info
-from hostkit.monitor.receiver import Received
+from hostkit.monitor.receiver import Received, decoder_for
 from hostkit.monitor.recording.recordings import Recorder
 from hostkit.monitor.requests import SessionRequests
 from hostkit.monitor.result import SessionResult
@@ -183,7 +183,7 @@ class Session:
         if received.ended:
             self._end_of_stream()
         if received.lost_some:
-            self._parts.validator.doubt_parameters()
+            parts.validator.doubt_parameters()
         frames = received.frames
         parts.recordings.add(epoch_us(self.clock), frames)
         parts.outlets.send(frames)
@@ -212,9 +212,7 @@ class Session:
 
     def _show(self, stretch: Stretch) -> None:
         if stretch.anew:
-            self._parts.conversation.begin_epoch()
-            self._parts.timesync.begin_epoch()
-            self._jitter.begin_epoch()
+            self._forget_device()
         if self._parts.judge.epoch != self._latest.epoch:
             self._publish()
         self._parts.timesync.arrived(stretch.time_us, stretch.received_ns)
@@ -225,19 +223,22 @@ class Session:
             view.take_batch(stretch.batch)
 
     def _begin_epoch(self) -> None:
-        parts = self._parts
-        parts.judge.begin_epoch()
+        self._parts.judge.begin_epoch()
         self._tell_earlier()
-        parts.timesync.begin_epoch()
-        parts.conversation.begin_epoch()
+        self._forget_device()
+
+    def _forget_device(self) -> None:
+        """Trust nothing that holds only while a device runs on: its clock, what it was asked."""
+        self._parts.conversation.begin_epoch()
+        self._parts.timesync.begin_epoch()
         self._jitter.begin_epoch()
 
     def _tell_earlier(self) -> None:
         """Tell the models which parameters held where a replay begins."""
-        replay, key = self._parts.replay, self.options.signing
+        replay = self._parts.replay
         if replay is not None:
             told = b"".join(replay.parameters_before())
-            self._parts.judge.tell(Decoder(key if key is None else key.for_replay()).feed(told))
+            self._parts.judge.tell(decoder_for(replay, self.options.signing).feed(told))
 
     def _speak(self) -> None:
         """Send what is due to the device."""

@@ -80,17 +80,13 @@ class Validator:
         self._retuning.drop_withheld()
         self._trackers = tuple(ResidualTracker(axis, self._period_s) for axis in self._axes)
 
-    def begin_epoch(self, *, parameters_kept: bool = False) -> None:
+    def begin_epoch(self) -> None:
         """Take the next sample as one that does not follow: it begins anew, and nothing was lost.
 
-        Parameters
-        ----------
-        parameters_kept
-            Whether the device uses the parameters that it told before.
+        The device may have started anew, so what it told of its parameters is forgotten.
         """
         self._order.begin()
-        if not parameters_kept:
-            self._retuning.forget()
+        self._retuning.forget()
 
     def told(self, name: str, value: float) -> None:
         """Take a parameter that the device told: the samples behind it were made with it."""
@@ -123,10 +119,8 @@ class Validator:
             What came in order, beside the models.
         """
         trace, step, follows = self._in_order(trace)
-        device, model = (
-            self._follower.device_rad(trace),
-            np.full((len(trace), len(self._axes)), np.nan),
-        )
+        device = self._follower.device_rad(trace)
+        model = np.full((len(trace), len(self._axes)), np.nan)
         wrong = np.zeros(len(trace), dtype=np.bool_)
         retuned = np.zeros_like(follows) if trace.retuned is None else trace.retuned
         for run in runs(retuned.tolist()):

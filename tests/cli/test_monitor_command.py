@@ -22,7 +22,7 @@ from device import Device
 
 from hostkit.cli.main import run
 from hostkit.design_file import save_design
-from hostkit.link.logs.tlog import STAMP, read_tlog
+from hostkit.link.logs.tlog import STAMP, read_tlog, stamped_frames
 from hostkit.recordings import load
 
 D = design()
@@ -104,6 +104,41 @@ def test_a_tlog_becomes_a_recording(folder: Path, capsys) -> None:
     assert (code, found["schema"], found["samples"]) == (0, "hostkit.record/1", 400)
     assert found["files"][0]["frames"] == 400
     assert len(load(folder / "c.csv")) == 400
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["record", "-o", "b.tlog"],
+        ["monitor", "design.json", "--record", "b.tlog"],
+        ["monitor", "design.json", "--record", "b.tlog", "--speed", "20"],
+    ],
+)
+def test_a_replayed_log_keeps_its_time_stamps(folder: Path, command: list[str]) -> None:
+    assert run([*command, "--port", "file:a.tlog"]) == 0
+    assert (folder / "b.tlog").read_bytes() == (folder / "a.tlog").read_bytes()
+
+
+def test_damage_in_a_log_moves_no_other_time_stamp(folder: Path) -> None:
+    stamped = [STAMP.pack(10**15 + k * 10_007) + frame for k, frame in enumerate(FRAMES)]
+    damaged = [*stamped[:50], stamped[50][:20], *stamped[51:60], b"noise" * 9, *stamped[60:]]
+    (folder / "d.tlog").write_bytes(b"".join(damaged))
+    assert run(["record", "--port", "file:d.tlog", "-o", "b.tlog"]) == 0
+    with (folder / "b.tlog").open("rb") as file:
+        kept = [STAMP.pack(time_us) + raw for time_us, raw in stamped_frames(file, folder)]
+    assert set(kept) <= set(stamped)
+    assert len(kept) >= len(stamped) - 3
+
+
+def test_a_restart_in_a_log_takes_as_long_in_the_recording_of_it(folder: Path) -> None:
+    times = [10**15 + k * 10_000 + 3_000_000 * (k >= 200) for k in range(400)]
+    twice = [*FRAMES[:200], *FRAMES[:200]]
+    stamped = (STAMP.pack(t) + frame for t, frame in zip(times, twice, strict=True))
+    (folder / "t.tlog").write_bytes(b"".join(stamped))
+    command = ["record", "--port", "file:t.tlog", "-o", "c.csv", "--design", "design.json"]
+    assert run(command) == 0
+    time_s = load(folder / "c.csv").time_s
+    assert np.diff(time_s).max() == pytest.approx(3.01, abs=0.02)
 
 
 def test_what_was_left_unfinished_is_readable_and_said(folder: Path, capsys) -> None:

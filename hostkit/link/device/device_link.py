@@ -79,12 +79,10 @@ class DeviceLink:
     ) -> None:
         self._transport = transport
         self._clock = SystemClock() if clock is None else clock
-        self._encoder = Encoder(signing)
-        self._decoder = Decoder(signing)
-        self.parameters = ParameterClient(self._send, self._clock, facts=facts)
-        self.commands = CommandClient(self._send, self._clock)
-        self._presence = Presence(system=system)
-        self._signing = signing is not None
+        self.parameters = ParameterClient(self.send, self._clock, facts=facts)
+        self.commands = CommandClient(self.send, self._clock)
+        self._system = system
+        self.use_key(signing)
         self._epoch = transport.epoch
 
     def __enter__(self) -> "DeviceLink":
@@ -108,6 +106,22 @@ class DeviceLink:
         """Sample rate by the device's own time; None while too little has come."""
         return self._presence.rate_hz
 
+    @property
+    def heard(self) -> bool:
+        """Whether a device was heard that is believed."""
+        return self._presence.sampling is not None or bool(self._presence.heard)
+
+    @property
+    def signed(self) -> bool:
+        """Whether the latest that was heard of the device was signed, with whatever key."""
+        return self._presence.signed
+
+    def use_key(self, signing: SigningKey | None) -> None:
+        """Speak with a key from now on, or with None without one; who was heard is forgotten."""
+        self._encoder, self._decoder = Encoder(signing), Decoder(signing)
+        self._presence = Presence(system=self._system)
+        self._has_key = signing is not None
+
     def find(self) -> Source:
         """Wait for the device and return its system and component.
 
@@ -120,13 +134,12 @@ class DeviceLink:
 
         def found() -> bool:
             waited = self._clock.monotonic() - begun_s
-            return self._presence.sampling is not None or (
-                bool(self._presence.heard) and waited >= SETTLE_S
-            )
+            return self._presence.sampling is not None or (self.heard and waited >= SETTLE_S)
 
         if not self.wait(found, FIND_S):
             raise DeviceError(self._presence.nobody(FIND_S, self._decoder.statistics()))
         source = self._presence.device()
+        self._system = source[0]
         self.parameters.attend(source)
         self.commands.attend(source)
         return source
@@ -142,7 +155,7 @@ class DeviceLink:
         self.parameters.request_all()
         self.wait(lambda: not self.parameters.listing, LISTING_S)
         if not self.parameters.complete:
-            if self._presence.signed and not self._signing:
+            if self.signed and not self._has_key:
                 raise DeviceError(KEY_WANTED)
             error = self.parameters.listing_error or f"no list came in {LISTING_S:g} s"
             raise DeviceError(error)
@@ -203,7 +216,8 @@ class DeviceLink:
                 self._take(frame)
         return True
 
-    def _send(self, message: Any) -> None:
+    def send(self, message: Any) -> None:
+        """Send a message of the dialect."""
         self._transport.write(self._encoder.pack(message))
 
     def _notice_epoch(self) -> None:

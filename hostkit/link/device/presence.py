@@ -33,7 +33,7 @@ class Presence:
     digest
         Of its design.
     signed
-        Whether a signed message came.
+        Whether the latest heartbeat or sample of a device was signed.
     """
 
     system: int | None = None
@@ -61,10 +61,10 @@ class Presence:
         """Take any frame that came; tell whether it is of a system that counts."""
         if self.system not in (None, frame.source[0]):
             return False
-        self.signed = self.signed or bool(frame.raw[FLAGS_AT] & SIGNED)
         if frame.name == "HEARTBEAT" and int(frame.message.type) != GROUND_STATION:
             if frame.source in self.heard or len(self.heard) < MOST_SOURCES:
                 self.heard[frame.source] += 1
+                self.signed = _is_signed(frame)
         elif frame.name == "TILT_SAMPLE":
             self._take_sample(frame)
         return True
@@ -109,8 +109,12 @@ class Presence:
             self.sampling = frame.source
         if frame.source != self.sampling:
             return
-        self.digest = digest_of(frame)
+        self.digest, self.signed = digest_of(frame), _is_signed(frame)
         now = (int(frame.message.sequence), int(frame.message.time_usec))
         if self._first is None or self._latest is None or now[0] < self._latest[0]:
             self._first = now
         self._latest = now
+
+
+def _is_signed(frame: Frame) -> bool:
+    return bool(frame.raw[FLAGS_AT] & SIGNED)

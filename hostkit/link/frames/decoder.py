@@ -34,9 +34,20 @@ class Frame:
         Whether it is a copy of one that came before.
     received_ns
         When its last bytes came, ns of a clock of the host that only rises; 0 if nobody said.
+    recorded_us
+        When it came as it was recorded, us since 1970; 0 for one that comes now.
     """
 
-    __slots__ = ("_message", "name", "raw", "received_ns", "repeated", "sequence", "source")
+    __slots__ = (
+        "_message",
+        "name",
+        "raw",
+        "received_ns",
+        "recorded_us",
+        "repeated",
+        "sequence",
+        "source",
+    )
 
     def __init__(
         self,
@@ -47,8 +58,10 @@ class Frame:
         sequence: int,
         repeated: bool = False,
         received_ns: int = 0,
+        recorded_us: int = 0,
     ) -> None:
         self.received_ns = received_ns
+        self.recorded_us = recorded_us
         self.source = source
         self.name = name
         self._message = message
@@ -66,6 +79,13 @@ class Frame:
         if self._message is None:
             self._message = _unpacker().decode(bytearray(self.raw))
         return self._message
+
+    def time_us(self, epoch_us: int) -> int:
+        """Return when it came, us since 1970; its clock was 0 at `epoch_us`, us since 1970.
+
+        One that was recorded came when it was recorded.
+        """
+        return self.recorded_us or epoch_us + self.received_ns // 1000
 
     def __repr__(self) -> str:
         return f"Frame({self.name} {self.sequence} of {self.source}, {len(self.raw)} bytes)"
@@ -90,15 +110,15 @@ class Decoder:
         self._sequences = SequenceAccount()
         self._signatures = None if signing is None else SignatureCheck(signing)
 
-    def feed(self, data: bytes, received_ns: int = 0) -> list[Frame]:
+    def feed(self, data: bytes, received_ns: int = 0, recorded_us: int = 0) -> list[Frame]:
         """Return the messages that `data` completes; it may be any bytes at all.
 
         Copies of a frame are returned too, and say so.
 
         Parameters
         ----------
-        received_ns
-            When the bytes came; every frame gets it.
+        received_ns, recorded_us
+            When the bytes came, and when they did as they were recorded; every frame gets both.
         """
         found = self._framer.feed(data)
         if self._signatures is not None:
@@ -108,7 +128,8 @@ class Decoder:
         for name, raw in found:
             source, sequence = (raw[SYSTEM_AT], raw[COMPONENT_AT]), raw[SEQUENCE_AT]
             repeated = take(source, sequence, raw)
-            frames.append(Frame(source, name, None, raw, sequence, repeated, received_ns))
+            when = (received_ns, recorded_us)
+            frames.append(Frame(source, name, None, raw, sequence, repeated, *when))
         return frames
 
     def begin_epoch(self) -> None:

@@ -6,6 +6,7 @@ The secret appears in no text: not in the representation of a key, not in an err
 import hashlib
 import hmac
 import os
+import secrets
 import string
 import time
 from collections.abc import Callable
@@ -18,6 +19,9 @@ from hostkit.errors import DeviceError
 from hostkit.link.frames.framing import COMPONENT_AT, FLAGS_AT, SIGNED, SYSTEM_AT
 
 SECRET_BYTES = 32
+NO_SECRET = bytes(SECRET_BYTES)
+"""What takes the secret of a device away."""
+
 HASH_BYTES = 6
 EPOCH_S = 1_420_070_400
 """2015-01-01, from which the timestamps of signatures count."""
@@ -56,7 +60,7 @@ class SigningKey:
     Raises
     ------
     DeviceError
-        If the secret is not of 32 bytes.
+        If the secret is not of 32 bytes, or all of them are zero: that means no secret.
     """
 
     secret: bytes = field(repr=False)
@@ -68,6 +72,8 @@ class SigningKey:
             raise DeviceError(
                 f"a signing key has {SECRET_BYTES} bytes; this one has {len(self.secret)}"
             )
+        if self.secret == NO_SECRET:
+            raise DeviceError(f"{SECRET_BYTES} zeros are no signing key; give random bytes")
 
     @classmethod
     def read(cls, path: Path, now: Now = time.time) -> "SigningKey":
@@ -83,6 +89,29 @@ class SigningKey:
         return cls(secret=_secret(_read_private(path), path), clock=SigningClock(now))
 
     @classmethod
+    def create(cls, path: Path, now: Now = time.time) -> "SigningKey":
+        """Make a key of random bytes and write it to a new file that only its owner may read.
+
+        The file is on the disk when this returns: whoever loses the key loses the device.
+
+        Raises
+        ------
+        DeviceError
+            If the file is there already, or cannot be written.
+        """
+        secret = secrets.token_bytes(SECRET_BYTES)
+        try:
+            with open(path, "xb", opener=_open_private) as file:
+                file.write(secret)
+                file.flush()
+                os.fsync(file.fileno())
+        except FileExistsError as error:
+            raise DeviceError(f"{path} is there already; a new key goes to a new file") from error
+        except OSError as error:
+            raise DeviceError(f"{path} cannot be written: {error.strerror}") from error
+        return cls(secret=secret, clock=SigningClock(now))
+
+    @classmethod
     def of_passphrase(cls, passphrase: str, now: Now = time.time) -> "SigningKey":
         """Return the key that MAVProxy makes of a passphrase."""
         digest = hashlib.sha256(passphrase.encode()).digest()
@@ -95,6 +124,10 @@ class SigningKey:
     def signature(self, head: bytes) -> bytes:
         """Return the last 6 bytes of a frame that is `head`, its timestamp included."""
         return hashlib.sha256(self.secret + head).digest()[:HASH_BYTES]
+
+
+def _open_private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 def _read_private(path: Path) -> bytes:
@@ -195,12 +228,13 @@ def sign_with(mav: Any, key: SigningKey, *, link_id: int = 0) -> None:
 
 
 def setup_signing_message(
-    key: SigningKey, target_system: int, now_s: float, *, target_component: int = 1
+    key: SigningKey | None, target_system: int, now_s: float, *, target_component: int = 1
 ) -> Any:
-    """Return the message that brings the secret to a device that has none yet.
+    """Return the message that brings a secret to a device; None takes its secret away.
 
     The secret stands in it in the clear: send it over a wire that nobody else listens to.
     """
+    secret = NO_SECRET if key is None else key.secret
     return python_module().MAVLink_setup_signing_message(
-        target_system, target_component, list(key.secret), timestamp_of(now_s)
+        target_system, target_component, list(secret), timestamp_of(now_s)
     )

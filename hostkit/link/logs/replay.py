@@ -36,6 +36,9 @@ class ReplayTransport:
         Time of the last frame given, and of the first one given with it, from the file's first.
     length_s
         Time of its last frame.
+    stamps
+        Of each frame that the last :meth:`read` gave: where it ends in the bytes, and its time
+        stamp, us since 1970.
 
     Raises
     ------
@@ -49,6 +52,7 @@ class ReplayTransport:
         self.state: PortState = "connected"
         self.epoch = 0
         self.overrun_bytes = 0
+        self.stamps: list[tuple[int, int]] = []
         self.speed, self.paused = speed, False
         self._path = path
         self._clock = SystemClock() if clock is None else clock
@@ -66,6 +70,7 @@ class ReplayTransport:
 
     def read(self, timeout_s: float) -> bytes | None:
         """Return the frames that are due, nothing if none is, None at the end."""
+        self.stamps = []
         if self._next is None:
             self.state = "ended"
             return None
@@ -147,6 +152,7 @@ class ReplayTransport:
             self.position_s = time_s
             frames.append(frame)
             size += len(frame)
+            self.stamps.append((size, self._newest_us))
             self._advance()
         return b"".join(frames)
 

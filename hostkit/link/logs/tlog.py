@@ -136,7 +136,7 @@ class TlogWriter:
         epoch_us
             The time since 1970, us, at which the clock of their arrivals was 0.
         """
-        self._append([(epoch_us + frame.received_ns // 1000, frame.raw) for frame in frames])
+        self._append([(frame.time_us(epoch_us), frame.raw) for frame in frames])
 
     def write(self, time_us: int, frame: bytes) -> None:
         """Append one frame."""

@@ -15,7 +15,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from hostkit.errors import DeviceError
 from hostkit.link.ports.protocol import PortState
@@ -28,6 +28,7 @@ FOLDER_BYTES = 70
 """The path of a socket may have about 100 bytes; a longer folder is not used."""
 
 
+@runtime_checkable
 class LeasablePort(Protocol):
     """A port that can be closed for a while."""
 

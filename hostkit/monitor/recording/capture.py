@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 from hostkit.errors import DeviceError
 from hostkit.link.clock import Clock, SystemClock, epoch_us
-from hostkit.link.frames.decoder import Decoder
 from hostkit.link.frames.signing import SigningKey
 from hostkit.link.ports.transport import Transport
 from hostkit.link.statistics import LinkStatistics
 from hostkit.monitor.device_status import Watches
 from hostkit.monitor.notices import Notices
-from hostkit.monitor.receiver import Receiver
+from hostkit.monitor.receiver import Receiver, decoder_for
 from hostkit.monitor.recording.recordings import Recorder, Recordings
 from hostkit.monitor.silence import SilenceWatch
 from hostkit.monitor.snapshot import DeviceStatus, Notice
@@ -63,7 +62,7 @@ class Capture:
         self._duration_s = duration_s
         self._clock = clock or SystemClock()
         self._notices = Notices(self._clock)
-        decoder = Decoder(signing)
+        decoder = decoder_for(transport, signing)
         self._receiver = Receiver(transport, decoder, self._clock, self._notices)
         self._recordings = Recordings(self._recorders, self._notices)
         self._watches = Watches()

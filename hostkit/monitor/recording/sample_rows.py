@@ -68,8 +68,10 @@ class SampleRows:
             return np.empty((0, len(COLUMNS)))
         read = payloads(good)
         self._require_design(good, read)
-        host_us = epoch_us + good[-1].received_ns // 1000
-        times_us = [self._time_us(time_us, host_us) for time_us in read["time_usec"].tolist()]
+        times_us = [
+            self._time_us(device_us, frame.time_us(epoch_us))
+            for device_us, frame in zip(read["time_usec"].tolist(), good, strict=True)
+        ]
         kept = np.array([time_us is not None for time_us in times_us], dtype=np.bool_)
         self.left_out += len(good) - int(kept.sum())
         time_s = np.array([t for t in times_us if t is not None], dtype=np.float64) / US_PER_S
