@@ -221,7 +221,7 @@ def test_a_device_with_a_secret_is_spoken_with_by_its_key(
     key_file.chmod(0o600)
     key = SigningKey.read(key_file)
     with served(folder, "--signing") as port:
-        with serial.Serial(port, timeout=10.0) as first:
+        with serial.Serial(port, timeout=60.0) as first:
             assert first.read(500)
             first.write(Encoder(key).pack(setup_signing_message(key, 1, time.time())))
             first.flush()
