@@ -21,8 +21,7 @@ from hostkit.targets import TARGETS
 LIVE_S = 2.0
 LEAST_SHARE = 0.5
 """What an emulator on a busy machine sends of what is due; none of it may be lost."""
-SLOWEST_MS = 100.0
-SESSIONS = 5
+SLOWEST_MS, SESSIONS = 100.0, 5
 DESIGN = design(accel_full_scale_g=4)
 
 
@@ -109,20 +108,26 @@ def test_one_changed_bit_of_the_filter_is_found(folder, code, capsys, tmp_path: 
     assert json.loads(capsys.readouterr().out)["mismatches"] > 0
 
 
+@pytest.mark.parametrize("code", ["host"], indirect=True)
 def test_timing_is_told_and_plausible(folder: Path, code: Path, capsys) -> None:
-    """A busy machine can only add to what the link takes, so the best of some sessions counts."""
+    """A busy machine can only blur what the link shows, so the best of some sessions counts."""
     with served(folder, code) as port:
         for _ in range(SESSIONS):
             _, document, _ = monitor(capsys, folder / "design.json", port)
             timing = document["timing"]
-            latency, jitter = timing["latency"], timing["jitter"]
-            assert timing["round_trip_ms"] > 0.0
-            for spread in (latency, jitter):
-                assert 0.0 <= spread["median_ms"] <= spread["p95_ms"] <= spread["max_ms"]
-            slowest_ms = max(timing["round_trip_ms"], latency["p95_ms"], jitter["p95_ms"])
-            if slowest_ms < SLOWEST_MS:
+            assert None not in (timing["round_trip_ms"], timing["latency"], timing["jitter"])
+            if is_plausible(timing):
                 return
-    pytest.fail(f"{timing}, more than {SLOWEST_MS} ms in each of {SESSIONS} sessions")
+    pytest.fail(f"{timing} is not plausible, as were {SESSIONS - 1} before")
+
+
+def is_plausible(timing: dict) -> bool:
+    """Tell whether all times are ordered, above 0 and below what an idle machine needs."""
+    spreads = [timing["latency"], timing["jitter"]]
+    return 0.0 < timing["round_trip_ms"] < SLOWEST_MS and all(
+        0.0 <= x["median_ms"] <= x["p95_ms"] <= x["max_ms"] and x["p95_ms"] < SLOWEST_MS
+        for x in spreads
+    )
 
 
 def test_targets_with_a_port_are_the_microcontrollers() -> None:
