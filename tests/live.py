@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
+import serial
 from designs import design
 
 from hostkit.design_file import save_design
@@ -23,7 +24,8 @@ from hostkit.simulation import SensorErrors, simulate
 
 CHROMIUM = "/usr/bin/chromium"
 DESIGN = design(accel_full_scale_g=4)
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
+START_S = 60.0
 POLL_MS = 50
 
 
@@ -102,6 +104,30 @@ def program(folder: Path, *arguments: str) -> Iterator[Program]:
         yield running
     finally:
         running.end()
+
+
+@contextlib.contextmanager
+def emulated(design_file: Path, target: str, recording: Path, *options: str) -> Iterator[str]:
+    """Serve a board on a pseudo-terminal; give its path once the board has said something.
+
+    The emulator starts with the first reader, which takes longer on a busy machine than a session
+    waits for a device.
+    """
+    command = [sys.executable, "-m", "hostkit", "emulate", str(design_file), "--pty"]
+    command += ["--target", target, "--recording", str(recording), *options]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True) as board:
+        try:
+            assert board.stdout is not None
+            path = board.stdout.readline().strip()
+            assert path, board.stderr and board.stderr.read()
+            with serial.Serial(path, timeout=START_S) as reader:
+                assert reader.read(1), f"nothing came in {START_S:g} s"
+            yield path
+        finally:
+            board.send_signal(signal.SIGINT)
+            board.communicate(timeout=START_S)
+    assert board.returncode == 0
 
 
 @dataclass

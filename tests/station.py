@@ -68,8 +68,9 @@ class GroundStation:
         pytest.fail(f"MAVProxy did not print {pattern!r}; it printed: {self.printed[-3000:]}")
 
     def close(self) -> None:
+        assert self._child.stdin is not None
         with contextlib.suppress(BrokenPipeError):
-            self.type("exit")
+            self._child.stdin.close()  # `exit` alone leaves it waiting for the next line
         try:
             self._child.wait(10.0)
         except subprocess.TimeoutExpired:

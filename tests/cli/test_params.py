@@ -1,12 +1,8 @@
 """``hostkit params`` with a device in Python, and with the real firmware at a real pty."""
 
-import contextlib
 import json
-import signal
-import subprocess
-import sys
 import time
-from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +11,7 @@ import serial
 from answering import AnsweringDevice, ManualClock
 from boards import require_or_skip
 from designs import design
+from live import emulated
 from pymavlink.mavparm import MAVParmDict
 
 from hostkit.cli.main import run
@@ -211,20 +208,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found
 
 
-@contextlib.contextmanager
-def served(folder: Path, *options: str) -> Iterator[str]:
+def served(folder: Path, *options: str) -> AbstractContextManager[str]:
     """The firmware of the host target behind a pseudo-terminal."""
-    command = [sys.executable, "-m", "hostkit", "emulate", str(folder / "design.json"), "--pty"]
-    command += ["--target", "host", "--recording", str(folder / "rest.csv"), *options]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
-        try:
-            assert p.stdout is not None
-            path = p.stdout.readline().strip()
-            assert path, p.stderr and p.stderr.read()
-            yield path
-        finally:
-            p.send_signal(signal.SIGINT)
-            p.communicate(timeout=30)
+    return emulated(folder / "design.json", "host", folder / "rest.csv", *options)
 
 
 def test_a_device_with_a_secret_is_spoken_with_by_its_key(
@@ -235,7 +221,7 @@ def test_a_device_with_a_secret_is_spoken_with_by_its_key(
     key_file.chmod(0o600)
     key = SigningKey.read(key_file)
     with served(folder, "--signing") as port:
-        with serial.Serial(port, timeout=10.0) as first:
+        with serial.Serial(port, timeout=60.0) as first:
             assert first.read(500)
             first.write(Encoder(key).pack(setup_signing_message(key, 1, time.time())))
             first.flush()

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import serial
 from boards import require_or_skip
 from designs import design
+from live import emulated
 from station import PATIENCE_S, GroundStation, require_station
 
 from hostkit.design_file import save_design
@@ -41,24 +41,8 @@ def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
     )
     save(recording, folder / "sweep.csv")
     save_design(DESIGN, folder / "design.json")
-    command = [sys.executable, "-m", "hostkit", "emulate", str(folder / "design.json"), "--pty"]
-    command += ["--target", "atmega328p", "--recording", str(folder / "sweep.csv")]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as p:
-        try:
-            assert p.stdout is not None
-            path = p.stdout.readline().strip()
-            assert path, p.stderr and p.stderr.read()
-            start(path)
-            yield path, folder / "design.json"
-        finally:
-            p.send_signal(signal.SIGINT)
-            p.communicate(timeout=30)
-
-
-def start(pty: str) -> None:
-    """The emulator starts with the first reader, which takes seconds on a busy machine."""
-    with serial.Serial(pty, timeout=PATIENCE_S) as reader:
-        assert reader.read(1), f"nothing came in {PATIENCE_S:g} s"
+    with emulated(folder / "design.json", "atmega328p", folder / "sweep.csv") as path:
+        yield path, folder / "design.json"
 
 
 class Plotter:

@@ -231,7 +231,7 @@ def test_bytes_on_the_socket(tmp_path: Path) -> None:
         @settings(FUZZ, max_examples=150)
         @given(pieces)
         def send(data: bytes) -> None:
-            with socket.create_connection(("127.0.0.1", server.port), timeout=10.0) as connection:
+            with socket.create_connection(("127.0.0.1", server.port), timeout=30.0) as connection:
                 connection.sendall(data)
                 connection.shutdown(socket.SHUT_WR)
                 answer = b""

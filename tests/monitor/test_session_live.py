@@ -19,6 +19,7 @@ from hostkit.validation import Thresholds
 
 D = design()
 READ_S = 0.125
+LIMIT_S = 30.0
 OPTIONS = SessionOptions(port="fake", patient=True)
 
 
@@ -284,13 +285,13 @@ def test_requests_from_other_threads_are_carried_out() -> None:
     box = {}
 
     def other_thread() -> None:
-        ready.wait(5.0)
+        ready.wait(LIMIT_S)
         box["session"].controls.restart_verdict()
         done.set()
 
     def meet() -> None:
         ready.set()
-        assert done.wait(5.0)
+        assert done.wait(LIMIT_S)
 
     steps = acts(frames)
     steps[10].do = meet

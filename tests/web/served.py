@@ -122,7 +122,7 @@ def running(
     server = Server(controls, reports=FakeReports(), folder=folder, **options)
     try:
         url = server.start()
-        with httpx.Client(base_url=url.partition("?")[0], timeout=10.0) as client:
+        with httpx.Client(base_url=url.partition("?")[0], timeout=30.0) as client:
             assert client.get(url).status_code == 303
             yield server, client
     finally:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import httpx
 
-WAIT_S = 10.0
+WAIT_S = 30.0
 
 
 @dataclass(frozen=True)
