@@ -44,11 +44,11 @@ def monitor(design_file: Path, as_json: bool) -> None:
     choice = chosen_monitor()
     design = read_design(design_file)
     result, problems = _watch(design, choice, interactive=not as_json)
-    _write_reports(result, choice)
     if as_json:
         emit_json(monitor_document(result))
     else:
         _show(result)
+    _write_reports(result, choice)
     if result.report.verdict != "pass":
         raise VerdictError(f"verdict {result.report.verdict}: " + "; ".join(result.report.reasons))
     if problems:
