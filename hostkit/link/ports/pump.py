@@ -14,7 +14,7 @@ from hostkit.link.ports.reconnect import Reconnecting
 QUEUE_BYTES = 8 << 20
 HANDOVER_S = 0.04
 """Judging costs more for each batch than for each sample of it."""
-REST_S = 0.001
+REST_S = 0.004
 """Between two reads; so finely it is known when something came."""
 BATCH_BYTES = 2048
 """More than this at once means that more is waiting, where a serial port keeps 4096 bytes."""
