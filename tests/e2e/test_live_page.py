@@ -13,7 +13,7 @@ from station import GroundStation, require_station
 
 from hostkit.filters.complementary import tau_from_eta
 
-NEW_TAU_S = 1.5
+NEW_ETA = 0.99
 LOST = "The port is lost; hostkit tries again."
 SWING_DEG = 3.0
 """The played motion swings by more."""
@@ -64,7 +64,7 @@ def test_a_device_is_watched_retuned_unplugged_recorded_and_replayed(
                 try:
                     sees_the_angle_move(page)
                     sees_the_verdict(page, "PASS")
-                    changes_tau(page)
+                    changes_eta(page)
                     unplugs_and_plugs_again(page, cable)
                     records(page, tmp_path)
                     downloads_reports(page)
@@ -116,13 +116,16 @@ def sees_the_verdict(page, verdict: str) -> None:
     until(page, lambda: shown(page, "#verdict").upper().startswith(verdict), f"verdict {verdict}")
 
 
-def changes_tau(page) -> None:
+def changes_eta(page) -> None:
     """A value is asked for, told by the device to be in use, and judged with."""
-    tau_s = tau_from_eta(DESIGN.parameter("eta"), DESIGN.period_s)
+    tau_s, new_tau_s = (
+        tau_from_eta(eta, DESIGN.period_s) for eta in (DESIGN.parameter("eta"), NEW_ETA)
+    )
     until(page, lambda: uses_tau(page, tau_s), f"tau {tau_s:g} s in use")
-    page.locator("#tau-value").fill(f"{NEW_TAU_S}")
+    page.locator("#tau-eta").fill(f"{NEW_ETA}")
     page.locator("#tau").get_by_role("button", name="Apply").click()
-    until(page, lambda: uses_tau(page, NEW_TAU_S), f"tau {NEW_TAU_S} s in use")
+    until(page, lambda: uses_tau(page, new_tau_s), f"tau {new_tau_s:g} s in use")
+    assert f"\N{GREEK SMALL LETTER ETA} {NEW_ETA}" in shown(page, "#tau-used")
     page.locator("#retuned").wait_for(state="visible")
     sees_more(page, 100)
     assert mismatches(page) == 0
