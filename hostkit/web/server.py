@@ -149,7 +149,7 @@ class _Uvicorn(uvicorn.Server):
 def _config(app: object) -> uvicorn.Config:
     # Addresses hold the token, so nothing of a request may reach a log.
     return uvicorn.Config(
-        app,  # type: ignore[arg-type]
+        app,  # type: ignore[arg-type]  # uvicorn and Starlette name the same interface apart
         http=BoundedProtocol,
         ws="none",
         lifespan="off",

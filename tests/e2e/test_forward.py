@@ -13,15 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from boards import require_or_skip
-from designs import design
-from live import emulated
+from live import emulated, write_inputs
 from station import PATIENCE_S, GroundStation, require_station
 
-from hostkit.design_file import save_design
-from hostkit.recordings import save
-from hostkit.simulation import SensorErrors, simulate
-
-DESIGN = design(accel_full_scale_g=4)
 AFTER_CHANGE_SAMPLES = 100
 
 
@@ -31,16 +25,7 @@ def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]
     require_or_skip("make", "avr-gcc", "node", "avr8js", "clang", "wasm-ld")
     require_station()
     folder = tmp_path_factory.mktemp("forward")
-    recording = simulate(
-        "sine-sweep",
-        duration_s=10.0,
-        rate_hz=DESIGN.rate_hz,
-        sensor=DESIGN.sensor,
-        errors=SensorErrors(),
-        rng=np.random.default_rng(1),
-    )
-    save(recording, folder / "sweep.csv")
-    save_design(DESIGN, folder / "design.json")
+    write_inputs(folder)
     with emulated(folder / "design.json", "atmega328p", folder / "sweep.csv") as path:
         yield path, folder / "design.json"
 

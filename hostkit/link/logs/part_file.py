@@ -11,7 +11,8 @@ from hostkit.errors import HostkitError
 
 try:
     import fcntl
-except ImportError:  # pragma: no cover - a system without POSIX locks
+# A system without POSIX locks; mypy takes no None for a module.
+except ImportError:
     fcntl = None  # type: ignore[assignment]
 
 SYNC_EVERY_S = 1.0

@@ -138,6 +138,7 @@ def pick_port(port: str, listing: Listing = list_ports) -> str:
         wanted = port.removeprefix("usb:")
         return _only(port, tuple(p for p in listing() if _is(p, wanted)), listing)
     if "://" not in port and any(mark in port for mark in "*?["):
+        # Path.glob takes no absolute pattern.
         found = sorted(glob(port))  # noqa: PTH207
         names = {os.path.realpath(name): name for name in found}
         return _only(port, tuple(PortInfo(device=name) for name in names.values()), listing)

@@ -43,6 +43,7 @@ def _has_open(process: Path, port: str) -> bool:
     with contextlib.suppress(OSError):
         for number in os.scandir(process / "fd"):
             with contextlib.suppress(OSError):
+                # A link of /proc need not name a path, such as "socket:[1]".
                 if os.readlink(number.path) == port:  # noqa: PTH115
                     return True
     return False

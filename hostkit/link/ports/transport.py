@@ -1,5 +1,6 @@
 """Where bytes come from: a serial port or pty, TCP, UDP, or a recorded tlog."""
 
+from functools import partial
 from pathlib import Path
 
 from hostkit.errors import DeviceError
@@ -10,7 +11,7 @@ from hostkit.link.ports.finder import PortFinder
 from hostkit.link.ports.lease import offer_port
 from hostkit.link.ports.protocol import PortState, Transport
 from hostkit.link.ports.pump import Pump
-from hostkit.link.ports.reconnect import Opener, Reconnecting
+from hostkit.link.ports.reconnect import Reconnecting
 from hostkit.link.ports.serial_port import SerialTransport
 from hostkit.link.ports.sockets import connect, listen
 
@@ -75,7 +76,7 @@ def open_link(
     if kind == "udp":
         return Pump(Reconnecting(lambda: listen(rest), keep=reconnect, clock=clock))
     if kind == "tcp":
-        opener: Opener = lambda: connect(rest, RECONNECT_TIMEOUT_S)  # noqa: E731
+        opener = partial(connect, rest, RECONNECT_TIMEOUT_S)
         return Pump(Reconnecting(opener, first=connect(rest), keep=reconnect, clock=clock))
     return _open_serial(port, baud, reconnect, clock)
 
