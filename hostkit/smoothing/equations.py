@@ -126,9 +126,8 @@ def _block_equations(
 
 def _block_weight(blocks: Blocks, settings: SmootherSettings) -> Array:
     time = blocks.duration_s
-    turned = (settings.gyro_rate_share * blocks.turned_rad) ** 2
     variances = (
-        settings.gyro_noise_density_rad_s_rthz**2 * time + turned,
+        settings.gyro_noise_density_rad_s_rthz**2 * time,
         settings.accel_noise_density_m_s2_rthz**2 * time,
         np.full_like(time, PLACE_STEP_M**2),
         settings.gyro_bias_walk_rad_s_rts**2 * time,

@@ -30,8 +30,6 @@ class Blocks:
         Shape ``(K,)``; the last block may be shorter.
     within
         Rotation from each sample to the first one, shape ``(K, M + 1, 3, 3)``.
-    turned_rad
-        Angle turned through, whichever way, shape ``(K,)``.
     velocity_m_s
         Specific force integrated, shape ``(K, 3)``.
     by_bias_s, by_rate_rad, by_force_m_s
@@ -43,7 +41,6 @@ class Blocks:
 
     duration_s: Array
     within: Array
-    turned_rad: Array
     velocity_m_s: Array
     by_bias_s: Array
     by_rate_rad: Array
@@ -90,7 +87,6 @@ def preintegrate(
     return Blocks(
         duration_s=present.sum(axis=(1, 2)) * period_s,
         within=within,
-        turned_rad=np.linalg.norm(rate, axis=2).sum(axis=1) * period_s,
         velocity_m_s=by_force.sum(axis=2),
         by_bias_s=integral(np.broadcast_to(present, rate.shape)),
         by_rate_rad=integral(rate),

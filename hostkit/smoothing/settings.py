@@ -5,22 +5,22 @@ from dataclasses import dataclass, fields
 from hostkit.errors import DesignError
 
 HIGHEST_LEAD_S = 0.1
+LOWEST, HIGHEST = 1e-6, 1e3
+"""Of any deviation in its own unit; beyond them double precision does not solve the equations."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmootherSettings:
     """Standard deviations that weigh the equations of `hostkit.smoothing.smoother`.
 
-    All but `lead_s` and `gyro_rate_share` must be above zero. A calibration constant is held at
-    zero by a deviation that is very small, and left to the recording by one that is large; a
-    recording that turns little cannot tell it, so large ones do harm.
+    All but `lead_s` must be above zero. It is their ratios that weigh; speed and reach also say
+    where heavy tails begin. A calibration constant is held at zero by a small deviation and left
+    to the recording by a large one, which does harm where the recording turns too little to tell.
 
     Attributes
     ----------
     gyro_noise_density_rad_s_rthz
         White noise of the rate, with all that acts like it: tuned ones are far above data sheets.
-    gyro_rate_share
-        Error of the rotation in a block as a share of the rotation.
     gyro_bias_rad_s, gyro_bias_walk_rad_s_rts
         Size of the bias at the start, and its random walk.
     gyro_scale
@@ -38,7 +38,6 @@ class SmootherSettings:
     """
 
     gyro_noise_density_rad_s_rthz: float = 0.0024
-    gyro_rate_share: float = 0.0003
     gyro_bias_rad_s: float = 0.03
     gyro_bias_walk_rad_s_rts: float = 1e-5
     gyro_scale: float = 0.001
@@ -60,8 +59,8 @@ class SmootherSettings:
         """
         for field in fields(self):
             value = getattr(self, field.name)
-            lowest = 0.0 if field.name in ("lead_s", "gyro_rate_share") else 1e-9
-            highest = HIGHEST_LEAD_S if field.name == "lead_s" else 1e6
+            lowest = 0.0 if field.name == "lead_s" else LOWEST
+            highest = HIGHEST_LEAD_S if field.name == "lead_s" else HIGHEST
             if not lowest <= value <= highest:
                 raise DesignError(
                     f"{field.name} = {value:g} of the smoother is outside [{lowest:g}, {highest:g}]"

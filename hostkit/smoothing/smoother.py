@@ -44,6 +44,7 @@ STEPS = 4
 """Steps of Gauss and Newton; further ones change the tilt by less than its error."""
 FEWEST_BLOCKS = 20
 START_CUTOFF_HZ = 0.1
+ADVICE = "are units, axes, the rate and the settings right?"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -96,14 +97,7 @@ def smooth(
     _require_fit(angular_rate_rad_s, specific_force_m_s2, period_s, settings)
     samples = max(1, round(settings.block_s / period_s))
     blocks = preintegrate(angular_rate_rad_s, specific_force_m_s2, period_s, samples)
-    estimate = _start(blocks)
-    try:
-        for _ in range(STEPS):
-            estimate = improve(blocks, settings, estimate)
-    except np.linalg.LinAlgError as error:
-        raise RecordingError(
-            f"the smoother found no tilt: {error}; are units, axes and the rate right?"
-        ) from error
+    estimate = _solve(blocks, settings)
     up = up_of_samples(blocks, estimate.orientation, period_s)
     return Smoothed(
         up=_led(up, angular_rate_rad_s, settings.lead_s),
@@ -127,6 +121,18 @@ def _require_fit(rate: Array, force: Array, period_s: float, settings: SmootherS
         raise RecordingError(f"{len(rate)} samples are too few to smooth: it takes {needed}")
     if not (np.isfinite(rate).all() and np.isfinite(force).all()):
         raise RecordingError("a rate or force to smooth is not a finite number; cut the gap out")
+
+
+def _solve(blocks: Blocks, settings: SmootherSettings) -> Estimate:
+    estimate = _start(blocks)
+    try:
+        for _ in range(STEPS):
+            estimate = improve(blocks, settings, estimate)
+    except np.linalg.LinAlgError as error:
+        raise RecordingError(f"the smoother found no tilt: {error}; {ADVICE}") from error
+    if not np.isfinite(estimate.orientation).all():
+        raise RecordingError(f"the smoother found no tilt, numbers ran over; {ADVICE}")
+    return estimate
 
 
 def _start(blocks: Blocks) -> Estimate:

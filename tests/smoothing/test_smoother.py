@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from hostkit.attitude import inclination_rad
 from hostkit.errors import DesignError, RecordingError
 from hostkit.smoothing import Smoothed, SmootherSettings, smooth
+from hostkit.smoothing.preintegration import preintegrate, up_of_samples
 from hostkit.smoothing.rotation import chain, rotation_from_vector, vector_from_rotation
+from hostkit.smoothing.settings import LOWEST
 from hostkit.units import DEG_PER_RAD, RAD_PER_DEG, STANDARD_GRAVITY_M_S2
 
 PERIOD_S = 0.01
@@ -39,7 +41,7 @@ def known(*, seconds: float = 40.0, size_rad_s: float = 1.0, size_m: float = 0.0
     orientation = chain(rotation_from_vector(rate[1:] * PERIOD_S))
     place = waves(rng, time, size_m)
     acceleration = np.gradient(np.gradient(place, PERIOD_S, axis=0), PERIOD_S, axis=0)
-    earth = acceleration + (0.0, 0.0, STANDARD_GRAVITY_M_S2)
+    earth = acceleration + np.array((0.0, 0.0, STANDARD_GRAVITY_M_S2))
     return Known(rate=rate, force=np.einsum("kji,kj->ki", orientation, earth), up=orientation[:, 2])
 
 
@@ -144,3 +146,37 @@ def test_a_force_of_zero_is_no_crash() -> None:
     zeros = np.zeros((1000, 3))
     smoothed = smooth(zeros, zeros, PERIOD_S, SmootherSettings())
     np.testing.assert_allclose(np.linalg.norm(smoothed.up, axis=1), 1.0)
+
+
+@pytest.mark.parametrize("count", [101, 93])
+def test_what_the_rates_missed_is_spread_over_the_block(count: int) -> None:
+    blocks = preintegrate(np.zeros((count, 3)), np.zeros((count, 3)), PERIOD_S, 20)
+    tilt_rad = 0.5 * np.arange(count) * PERIOD_S
+    turned = rotation_from_vector(np.stack((tilt_rad, 0.0 * tilt_rad, 0.0 * tilt_rad), axis=1))
+    at_node = np.append(np.arange(0, count - 1, 20), count - 1)
+    up = up_of_samples(blocks, turned[at_node], PERIOD_S)
+    np.testing.assert_allclose(up, turned[:, 2], atol=1e-3)  # a chord's sag
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_numbers_that_run_over_are_refused() -> None:
+    force = np.full((1000, 3), 1e200)
+    with pytest.raises(RecordingError, match="found no tilt"):
+        smooth(np.zeros((1000, 3)), force, PERIOD_S, SmootherSettings())
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "gyro_noise_density_rad_s_rthz",
+        "gyro_bias_walk_rad_s_rts",
+        "gyro_scale",
+        "accel_offset_m_s2",
+        "accel_scale",
+    ],
+)
+def test_the_smallest_deviation_holds_a_value_and_spoils_nothing(name: str) -> None:
+    motion = known(seconds=100.0)
+    settings = replace(SmootherSettings(), **{name: LOWEST})
+    smoothed = smooth(motion.rate + BIAS_RAD_S, motion.force, PERIOD_S, settings)
+    assert rmse_deg(smoothed, motion.up) < 0.05

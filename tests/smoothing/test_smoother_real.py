@@ -20,7 +20,6 @@ from hostkit.units import DEG_PER_RAD
 GOOD_SENSOR = SmootherSettings()
 PENDULUM = SmootherSettings(
     gyro_noise_density_rad_s_rthz=0.154,
-    gyro_rate_share=0.00056,
     gyro_bias_rad_s=0.33,
     gyro_bias_walk_rad_s_rts=4.2e-5,
     gyro_scale=0.00023,
@@ -32,7 +31,6 @@ PENDULUM = SmootherSettings(
 )
 ROBOT = SmootherSettings(
     gyro_noise_density_rad_s_rthz=0.0043,
-    gyro_rate_share=0.00047,
     gyro_bias_rad_s=0.014,
     gyro_bias_walk_rad_s_rts=1.1e-4,
     gyro_scale=0.0055,
@@ -44,7 +42,6 @@ ROBOT = SmootherSettings(
 )
 TEN_BITS = SmootherSettings(
     gyro_noise_density_rad_s_rthz=0.032,
-    gyro_rate_share=0.0043,
     gyro_bias_rad_s=0.0031,
     gyro_bias_walk_rad_s_rts=1.2e-5,
     gyro_scale=0.75,
