@@ -34,6 +34,8 @@ PLACE_STEP_M = 1e-4
 """How exactly a step of position is the velocity's: loose enough for a sound matrix."""
 HEADING_RAD = 1e-3
 """Holds the first heading, which nothing measures and nothing needs."""
+CLIPPED_RAD_S = 1.0
+"""Size of what a clipped rate lacks."""
 FREE = 1e-9
 """Weight of unknowns without an equation of their own."""
 TAIL = 2.0
@@ -126,8 +128,9 @@ def _block_equations(
 
 def _block_weight(blocks: Blocks, settings: SmootherSettings) -> Array:
     time = blocks.duration_s
+    unknown_rad = CLIPPED_RAD_S * blocks.clipped_s
     variances = (
-        settings.gyro_noise_density_rad_s_rthz**2 * time,
+        settings.gyro_noise_density_rad_s_rthz**2 * time + unknown_rad**2,
         settings.accel_noise_density_m_s2_rthz**2 * time,
         np.full_like(time, PLACE_STEP_M**2),
         settings.gyro_bias_walk_rad_s_rts**2 * time,

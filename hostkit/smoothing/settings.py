@@ -31,6 +31,8 @@ class SmootherSettings:
         Sizes of the accelerometer's offset and scale error.
     speed_m_s, reach_m
         How fast the body moves and how far from its mean place, counted once a second.
+    gyro_full_scale_rad_s
+        Rates from here on are clipped: the true ones are unknown. The default is beyond them all.
     block_s
         Time between the unknown states.
     lead_s
@@ -46,6 +48,7 @@ class SmootherSettings:
     accel_scale: float = 0.0002
     speed_m_s: float = 0.06
     reach_m: float = 0.9
+    gyro_full_scale_rad_s: float = HIGHEST
     block_s: float = 0.2
     lead_s: float = 0.0
 

@@ -96,7 +96,10 @@ def smooth(
     """
     _require_fit(angular_rate_rad_s, specific_force_m_s2, period_s, settings)
     samples = max(1, round(settings.block_s / period_s))
-    blocks = preintegrate(angular_rate_rad_s, specific_force_m_s2, period_s, samples)
+    full_scale_rad_s = settings.gyro_full_scale_rad_s
+    blocks = preintegrate(
+        angular_rate_rad_s, specific_force_m_s2, period_s, samples, full_scale_rad_s
+    )
     estimate = _solve(blocks, settings)
     up = up_of_samples(blocks, estimate.orientation, period_s)
     return Smoothed(

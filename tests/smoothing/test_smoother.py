@@ -180,3 +180,12 @@ def test_the_smallest_deviation_holds_a_value_and_spoils_nothing(name: str) -> N
     settings = replace(SmootherSettings(), **{name: LOWEST})
     smoothed = smooth(motion.rate + BIAS_RAD_S, motion.force, PERIOD_S, settings)
     assert rmse_deg(smoothed, motion.up) < 0.05
+
+
+def test_clipped_rates_are_not_believed() -> None:
+    motion = known(size_rad_s=2.0)
+    rate = np.clip(motion.rate, -4.0, 4.0)
+    believed = smooth(rate, motion.force, PERIOD_S, SmootherSettings())
+    settings = SmootherSettings(gyro_full_scale_rad_s=4.0)
+    doubted = smooth(rate, motion.force, PERIOD_S, settings)
+    assert rmse_deg(doubted, motion.up) < 0.5 * rmse_deg(believed, motion.up)

@@ -75,6 +75,9 @@ CASES = (
 )
 
 
+CLIPPED = Case(folder="repoimu_tstick_saturated", settings=GOOD_SENSOR, limit_deg=np.inf)
+
+
 def recordings(folder: Path, case: Case) -> Iterator[Recording]:
     for path in sorted((folder / case.folder).glob("*.npz")):
         yield load(path)
@@ -105,3 +108,10 @@ def test_the_error_stays_below_its_limit(case: Case, data_folder: Path) -> None:
     errors = [error_deg(recording, case) for recording in recordings(data_folder, case)]
     assert len(errors) >= 5
     assert np.mean(errors) < case.limit_deg
+
+
+def test_clipped_recordings_gain_from_the_full_scale(data_folder: Path) -> None:
+    scale = replace(GOOD_SENSOR, gyro_full_scale_rad_s=420.0 / DEG_PER_RAD)
+    told = replace(CLIPPED, settings=scale)
+    for recording in recordings(data_folder, CLIPPED):
+        assert error_deg(recording, told) < error_deg(recording, CLIPPED) + 0.1
