@@ -29,6 +29,7 @@ ParameterName = Literal[
     "rest_rate",
     "rest_force",
     "rest_gain",
+    "clip_rate",
     "lead",
     "gyro_bias",
     "gyro_scale",
@@ -161,6 +162,16 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         title="rest: gain of the bias",
     ),
     ParameterKind(
+        name="clip_rate",
+        unit="rad/s",
+        lowest=0.1,
+        highest=70.0,
+        default=34.0,
+        shown_unit="deg/s",
+        shown_per_unit=DEG_PER_RAD,
+        title="rate beyond which the gyroscope is clipped",
+    ),
+    ParameterKind(
         name="lead",
         unit="s",
         lowest=-0.05,
@@ -240,8 +251,8 @@ def parameters(*chosen: Parameter) -> tuple[Parameter, ...]:
 
 def default_parameters() -> tuple[Parameter, ...]:
     """Return what suits an ordinary sensor: gains, start and rest detection."""
-    own = [k for k in KINDS if not k.per_axis and k.neutral is None]
-    return parameters(*(parameter(kind.name, kind.default) for kind in own))
+    names: tuple[ParameterName, ...] = ("start", "rest_rate", "rest_force", "rest_gain")
+    return parameters(*(parameter(name, BY_NAME[name].default) for name in names))
 
 
 def checked_value(design: FilterDesign, kind: ParameterKind, key: str) -> float | None:
