@@ -160,11 +160,12 @@ def _check_step(design: FilterDesign, own: Settings, full_scale_rad_s: float) ->
     scale = max(own.calibration.gyro_scale)
     turn = ((1.0 + scale) * full_scale_rad_s + BIAS_LIMIT_RAD_S) * design.period_s
     if turn > STEP_LIMIT_RAD:
+        least_hz = design.rate_hz * turn / STEP_LIMIT_RAD
         raise FormatError(
             f"rate_hz = {design.rate_hz:g} with gyro_full_scale_deg_s = "
             f"{design.sensor.gyro_full_scale_deg_s} turns up to {turn:.3g} rad per sample; the "
-            f"observer's limit is {STEP_LIMIT_RAD}: sample at {design.rate_hz * turn / STEP_LIMIT_RAD:.0f}"
-            " Hz or faster, or narrow the range"
+            f"observer's limit is {STEP_LIMIT_RAD}: sample at {least_hz:.0f} Hz or faster, or "
+            "narrow the range"
         )
 
 
