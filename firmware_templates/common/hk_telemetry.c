@@ -62,10 +62,9 @@ static bool send_sample(hk_app_t *app)
     return HK_SEND(&app->link, TILT_SAMPLE, &message);
 }
 
-#if HK_FILTER_STATE_WORDS
-typedef char hk_state_fits_message
-    [HK_FILTER_STATE_WORDS <= MAVLINK_MSG_TILT_STATE_FIELD_WORDS_LEN ? 1 : -1];
+typedef char hk_plan_knows_state[HK_FILTER_STATE_WORDS == HK_TOLD_WORDS ? 1 : -1];
 
+#if HK_FILTER_STATE_WORDS
 static bool send_state(hk_app_t *app)
 {
     mavlink_tilt_state_t message = {0};
