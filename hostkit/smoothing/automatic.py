@@ -40,8 +40,8 @@ PLANAR_GYRO_SCALE = 0.0003
 def is_planar(angular_rate_rad_s: Array) -> bool:
     """Return whether a motion turns about one axis only.
 
-    Where it does, a free scale error of the gyroscope looks like a tilt that goes with the swing, and
-    nothing in the recording can tell them apart.
+    Where it does, a scale error of the gyroscope looks like a tilt that goes with the swing, and
+    nothing in the recording can tell the two apart.
 
     Parameters
     ----------

@@ -1,11 +1,12 @@
 """What a design says of the sensor: ranges, calibration and lead."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hostkit.records import FilterDesign
 from hostkit.smoothing.rotation import Array
+from hostkit.smoothing.settings import SmootherSettings
 from hostkit.units import RAD_PER_DEG
 
 Triple = tuple[float, float, float]
@@ -37,6 +38,14 @@ class KnownSensor:
     gyro_scale: Triple = NONE
     accel_offset_m_s2: Triple = NONE
     accel_scale: Triple = NONE
+
+    def delayed(self, lead_s: float) -> "KnownSensor":
+        """Return the sensor with another lead."""
+        return replace(self, lead_s=lead_s)
+
+    def led(self, settings: SmootherSettings) -> SmootherSettings:
+        """Return settings with the lead, where it is known."""
+        return settings if self.lead_s is None else replace(settings, lead_s=self.lead_s)
 
     def rate_rad_s(self, reading: Array) -> Array:
         """Return angular rates, put right, of readings of shape ``(N, 3)``."""

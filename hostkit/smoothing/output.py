@@ -28,8 +28,9 @@ def as_reference(recording: Recording, up: Array) -> Recording:
     up
         Up direction in sensor axes, shape ``(N, 3)``; NaN where there is none.
     """
-    origin = recording.origin.split(f"; {ORIGIN}")[0]
-    return replace(recording, up_reference=up, origin=f"{origin}; {ORIGIN} {__version__}")
+    origin = recording.origin.partition(ORIGIN)[0].rstrip("; ")
+    said = f"{ORIGIN} {__version__}"
+    return replace(recording, up_reference=up, origin=f"{origin}; {said}" if origin else said)
 
 
 def save_smoothed(recording: Recording, up: Array, path: Path) -> None:

@@ -1,25 +1,21 @@
 """A recording smoothed: cut at its gaps, put right, smoothed piece by piece, and scored."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hostkit.attitude import inclination_rad, pitch_from_up, roll_from_up, to_body, wrap_rad
-from hostkit.errors import RecordingError
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.recordings.sanity.clipping import BLURRED, NARROWEST_GYRO_RAD_S, clips
 from hostkit.records import AXES, AxisChoice
 from hostkit.smoothing.known import KnownSensor
+from hostkit.smoothing.pieces import ANY_SENSOR, prepare_recording
 from hostkit.smoothing.rotation import Array
-from hostkit.smoothing.settings import HIGHEST, SmootherSettings
-from hostkit.smoothing.smoother import Smoothed, fewest_samples, smooth
-from hostkit.smoothing.stretches import Stretch, stretches
+from hostkit.smoothing.settings import SmootherSettings
+from hostkit.smoothing.smoother import Smoothed, solve
 
 ORIGIN = "reference smoothed by hostkit"
 """Stands in the origin of a recording whose reference is no measured one."""
-ANY_SENSOR = KnownSensor()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -44,15 +40,15 @@ class SmoothedRecording:
         Rows between gaps that are too few to smooth.
     resampled
         Whether times were so uneven that readings were interpolated.
-    doubted_samples
-        Samples whose rate was not believed: clipped, or put into a short gap.
+    doubted_s
+        Time whose rate was not believed: clipped, or in a short gap.
     """
 
     up: Array
     pieces: tuple[Piece, ...]
     short: tuple[slice, ...]
     resampled: bool
-    doubted_samples: int
+    doubted_s: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,74 +90,20 @@ def smooth_recording(
     RecordingError
         If no piece is long enough, or one cannot be solved.
     """
-    base = _settings(settings, known)
-    clipped = _clipped(recording, known)
+    base = known.led(SmootherSettings() if settings is None else settings)
+    prepared = prepare_recording(recording, base, known)
     up = np.full((len(recording), 3), np.nan)
     pieces: list[Piece] = []
-    short: list[slice] = []
-    parts = stretches(recording.time_s)
-    doubted = 0
-    for part in parts:
-        if len(part.grid_s) < fewest_samples(base, part.period_s):
-            short.append(part.rows)
-            continue
-        unknown = part.doubted | _near(part, clipped)
-        found = smooth(
-            part.at_grid(known.rate_rad_s(recording.angular_rate_rad_s[part.rows])),
-            part.at_grid(known.force_m_s2(recording.specific_force_m_s2[part.rows])),
-            part.period_s,
-            base,
-            automatic=settings is None,
-            doubted=unknown,
-        )
-        doubted += int(unknown.sum())
-        up[part.rows] = part.at_rows(found.up)
-        pieces.append(Piece(rows=part.rows, smoothed=found))
-    if not pieces:
-        raise _too_short(recording, parts, base)
+    for piece in prepared.pieces:
+        found = solve(piece.prepared, base, automatic=settings is None)
+        up[piece.stretch.rows] = piece.stretch.at_rows(found.up)
+        pieces.append(Piece(rows=piece.stretch.rows, smoothed=found))
     return SmoothedRecording(
         up=up,
         pieces=tuple(pieces),
-        short=tuple(short),
-        resampled=not all(part.is_even for part in parts),
-        doubted_samples=doubted,
-    )
-
-
-def _settings(settings: SmootherSettings | None, known: KnownSensor) -> SmootherSettings:
-    """Return settings with the lead of the design; readings are judged for clipping as they are."""
-    base = SmootherSettings() if settings is None else settings
-    return base if known.lead_s is None else replace(base, lead_s=known.lead_s)
-
-
-def _clipped(recording: Recording, known: KnownSensor) -> NDArray[np.bool_]:
-    """Return which readings are at the end of the range, of the design or of the recording."""
-    rate = recording.angular_rate_rad_s
-    found = np.any(np.abs(rate) >= min(known.gyro_full_scale_rad_s, HIGHEST), axis=1)
-    for clip in clips(rate, NARROWEST_GYRO_RAD_S):
-        outward = np.sign(clip.value) * rate[:, clip.axis]
-        found |= outward >= (1.0 - BLURRED.width) * abs(clip.value)
-    return np.asarray(found)
-
-
-def _near(part: Stretch, clipped: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which points of the grid rest on a clipped row."""
-    rows = clipped[part.rows]
-    if part.is_even or not rows.any():
-        return rows if part.is_even else np.zeros(len(part.grid_s), dtype=np.bool_)
-    return np.asarray(np.interp(part.grid_s, part.time_s, rows.astype(np.float64)) > 0.0)
-
-
-def _too_short(
-    recording: Recording, parts: tuple[Stretch, ...], settings: SmootherSettings
-) -> RecordingError:
-    longest = max(parts, key=lambda part: len(part.grid_s))
-    needed_s = fewest_samples(settings, longest.period_s) * longest.period_s
-    length_s = len(longest.grid_s) * longest.period_s
-    return RecordingError(
-        f"recording {recording.name!r} has {len(parts)} piece(s) between gaps, the longest of "
-        f"{length_s:.3g} s; smoothing takes {needed_s:.3g} s without a gap of "
-        "more than 0.25 s. If the rows came in bursts, import with --resample HZ"
+        short=prepared.short,
+        resampled=not all(piece.stretch.is_even for piece in prepared.pieces),
+        doubted_s=sum(float(p.prepared.blocks.doubted_s.sum()) for p in prepared.pieces),
     )
 
 

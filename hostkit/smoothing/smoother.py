@@ -111,18 +111,64 @@ def smooth(
         shorter than twenty blocks, or cannot be solved.
     """
     rate, force = angular_rate_rad_s, specific_force_m_s2
+    return solve(prepare(rate, force, period_s, settings, doubted), settings, automatic=automatic)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prepared:
+    """What is the same for all settings: readings as blocks, and where the solution starts."""
+
+    angular_rate_rad_s: Array
+    period_s: float
+    blocks: Blocks
+    start: Estimate
+    planar: bool
+
+
+def prepare(
+    angular_rate_rad_s: Array,
+    specific_force_m_s2: Array,
+    period_s: float,
+    settings: SmootherSettings,
+    doubted: NDArray[np.bool_] | None = None,
+) -> Prepared:
+    """Return what solving takes; of the settings, full scale and block count here.
+
+    Raises
+    ------
+    RecordingError
+        If the arrays cannot be smoothed, see `smooth`.
+    """
+    rate, force = angular_rate_rad_s, specific_force_m_s2
     _require_fit(rate, force, period_s, settings)
     clipped = np.any(np.abs(rate) >= settings.gyro_full_scale_rad_s, axis=1)
     unknown = clipped if doubted is None else clipped | doubted
     blocks = preintegrate(rate, force, period_s, block_samples(settings, period_s), unknown)
-    start, planar, compared = _start(blocks), is_planar(rate), 0
-    settings = held(settings, planar)
+    return Prepared(
+        angular_rate_rad_s=rate,
+        period_s=period_s,
+        blocks=blocks,
+        start=_start(blocks),
+        planar=is_planar(rate),
+    )
+
+
+def solve(prepared: Prepared, settings: SmootherSettings, *, automatic: bool = False) -> Smoothed:
+    """Return the tilt of what was prepared.
+
+    Raises
+    ------
+    RecordingError
+        If it cannot be solved.
+    """
+    blocks, compared = prepared.blocks, 0
+    settings = held(settings, prepared.planar)
     if automatic:
-        settings, compared = chosen(blocks, start, settings, planar)
-    estimate = _solve(blocks, settings, start)
-    up = up_of_samples(blocks, estimate.orientation, period_s)
+        settings, compared = chosen(blocks, prepared.start, settings, prepared.planar)
+    estimate = _solve(blocks, settings, prepared.start)
+    up = up_of_samples(blocks, estimate.orientation, prepared.period_s)
     return Smoothed(
-        up=_led(up, rate, settings.lead_s),
+        up=_led(up, prepared.angular_rate_rad_s, settings.lead_s),
         node_time_s=np.concatenate(((0.0,), np.cumsum(blocks.duration_s))),
         gyro_bias_rad_s=estimate.bias_rad_s,
         gyro_scale=estimate.constants[GYRO_SCALE],
