@@ -38,6 +38,7 @@ FLOORS = (
         "files",
         "identifiers",
         "json_object",
+        "literals",
         "provenance",
     ),
 )
