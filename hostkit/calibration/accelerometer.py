@@ -1,31 +1,34 @@
 """Offset and scale of an accelerometer from poses: at rest the force is as large as gravity.
 
-With the reading m of a pose, the offset o and the scale error s of each axis, the true force is
-``f = (1 + s) * (m - o)``, and a pose at rest says ``|f| = g`` in whatever position. Each pose gives
-one equation for six unknowns, so six poses are the least, and they must differ enough.
+Each pose gives one equation for six unknowns, so six poses are the least, and they must differ
+enough. Axes that are not square to each other would pass for offsets if the poses are not evenly
+spread, so they are estimated beside them, as numbers that are small unless the poses say otherwise;
+the filters have no place for them.
 
 Source: I. Skog, P. Handel, "Calibration of a MEMS inertial measurement unit", XVII IMEKO World
-Congress, 2006; without the misalignments, which the filters of hostkit have no place for.
+Congress, 2006.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import least_squares
 
+from hostkit.calibration.accel_model import TERMS, UNKNOWNS, jacobian, residual
 from hostkit.calibration.least_squares import Flags, Noise, covariance, good_rows, sigma_of
 from hostkit.errors import CalibrationError
 from hostkit.recordings.recording import Vector
 from hostkit.records import read_only
 
-UNKNOWNS = 6
-NOISE = Noise(sigma=0.02, least_bad=0.2)
-"""m/s^2: 2 mg for the nonlinearity and the noise of a cheap part. A pose is bad from 20 mg on, for
-10 mg can come of axes that are not square to each other, which is no fault of the pose."""
+NOISE = Noise(sigma=0.02, least_bad=0.1)
+"""m/s^2: 2 mg for the nonlinearity and the noise of a cheap part; 10 mg make a pose bad."""
+SKEW_PRIOR = 0.01
+"""Standard deviation assumed of T's numbers; the MPU-6050's data sheet allows 0.02."""
 OFFSET_ERROR_LIMIT_M_S2 = 0.06
 SCALE_ERROR_LIMIT = 0.006
 """Largest standard errors that still improve a part: 6 mg, and as much at 1 g."""
-HOPELESS = 3.0
+HOPELESS = 6.0
 """Poses that leave errors this many times the limits are not fitted at all."""
 LARGEST_SCALE = 0.25
 
@@ -37,59 +40,63 @@ class AccelFit:
     Attributes
     ----------
     offset_m_s2, scale
-        The six numbers, each ``(3,)``, sensor axes.
-    offset_error_m_s2, scale_error
-        Their standard errors.
+        The six numbers, each ``(3,)``, sensor axes; 0 if they are not fitted.
+    skew_rad
+        By how much y to x, z to x, z to y are not square, half of it each, shape ``(3,)``.
+    offset_error_m_s2, scale_error, skew_error_rad
+        Standard errors of these; infinite if the poses say nothing.
     used
         Which poses fit, shape ``(P,)``; the others are left out.
     before_m_s2, after_m_s2
-        Magnitude of the force less gravity, as read and corrected, shape ``(P,)``.
+        Magnitude of the force less gravity, as read and corrected by the six, shape ``(P,)``.
+    model_m_s2
+        The same corrected by all nine.
     condition
-        Condition number of the equations; 1 would be ideal, six faces have 1.4.
+        Condition number of the equations of the six; six faces have 1.0.
     """
 
     offset_m_s2: Vector
     scale: Vector
+    skew_rad: Vector
     offset_error_m_s2: Vector
     scale_error: Vector
+    skew_error_rad: Vector
     used: Flags
     before_m_s2: Vector
     after_m_s2: Vector
+    model_m_s2: Vector
     condition: float
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        for array in (self.offset_m_s2, self.scale, self.before_m_s2, self.after_m_s2):
+        for array in (self.offset_m_s2, self.scale, self.skew_rad, self.offset_error_m_s2):
             read_only(array)
-        read_only(self.offset_error_m_s2)
-        read_only(self.scale_error)
+        for array in (self.scale_error, self.skew_error_rad, self.before_m_s2, self.after_m_s2):
+            read_only(array)
+        read_only(self.model_m_s2)
         read_only(self.used)
 
     @property
     def determined(self) -> bool:
         """Whether the standard errors are small enough for the numbers to be of use."""
-        return standard_errors_suffice(self.offset_error_m_s2, self.scale_error)
+        return _suffices(np.concatenate((self.offset_error_m_s2, self.scale_error)), 1.0)
+
+    @property
+    def unknowns(self) -> Vector:
+        """The nine numbers in the form of `hostkit.calibration.accel_model`, offsets in m/s^2."""
+        return np.concatenate((self.offset_m_s2, self.scale, self.skew_rad))
 
     def corrected(self, force_m_s2: Vector) -> Vector:
-        """Return the true force of readings, both of shape ``(..., 3)``."""
+        """Return the true force of readings, both of shape ``(..., 3)``, by the six numbers."""
         true: Vector = (1.0 + self.scale) * (force_m_s2 - self.offset_m_s2)
         return true
-
-
-def standard_errors_suffice(offset_error_m_s2: Vector, scale_error: Vector) -> bool:
-    """Tell whether standard errors of offset and scale, each ``(3,)``, are within the limits."""
-    return bool(
-        (offset_error_m_s2 <= OFFSET_ERROR_LIMIT_M_S2).all()
-        and (scale_error <= SCALE_ERROR_LIMIT).all()
-    )
 
 
 def fit_accelerometer(force_m_s2: Vector, gravity_m_s2: float) -> AccelFit:
     """Fit offset and scale to the mean forces of poses.
 
     The first fit weighs bad poses down (Cauchy's loss); poses far from it are left out of the
-    second, which is plain least squares. Standard errors are infinite if the poses do not
-    determine the numbers.
+    second, which is plain least squares.
 
     Parameters
     ----------
@@ -103,90 +110,93 @@ def fit_accelerometer(force_m_s2: Vector, gravity_m_s2: float) -> AccelFit:
     CalibrationError
         If the result is no sensor's: a scale beyond 25 %.
     """
-    before = np.linalg.norm(force_m_s2, axis=1) - gravity_m_s2
-    expected = _errors(np.zeros(UNKNOWNS), force_m_s2, gravity_m_s2, NOISE.sigma)
-    if not standard_errors_suffice(expected[:3] / HOPELESS, expected[3:] / HOPELESS):
-        return _undetermined(before, expected)
+    expected = term_errors(np.zeros(UNKNOWNS), force_m_s2, gravity_m_s2, NOISE.sigma)
+    solution, used = np.zeros(UNKNOWNS), np.ones(len(force_m_s2), dtype=np.bool_)
+    if not _suffices(expected[:TERMS], HOPELESS):
+        return _result(solution, expected, used, force_m_s2, gravity_m_s2)
     robust = _solve(force_m_s2, gravity_m_s2, loss="cauchy")
-    size = np.abs(_residual(robust, force_m_s2, gravity_m_s2))
-    used = good_rows(size, NOISE, UNKNOWNS + 2)
+    used = good_rows(np.abs(residual(robust, force_m_s2, gravity_m_s2)), NOISE, TERMS + 2)
     solution = _solve(force_m_s2[used], gravity_m_s2, loss="linear")
     _require_sensible(solution)
-    after = _residual(solution, force_m_s2, gravity_m_s2)
-    sigma = sigma_of(after[used], UNKNOWNS, NOISE)
-    error = _errors(solution, force_m_s2[used], gravity_m_s2, sigma)
-    return AccelFit(
-        offset_m_s2=solution[:3] * gravity_m_s2,
-        scale=solution[3:].copy(),
-        offset_error_m_s2=error[:3].copy(),
-        scale_error=error[3:].copy(),
-        used=used,
-        before_m_s2=before,
-        after_m_s2=after,
-        condition=float(np.linalg.cond(accel_jacobian(solution, force_m_s2[used], gravity_m_s2))),
-    )
+    sigma = sigma_of(residual(solution, force_m_s2[used], gravity_m_s2), TERMS, NOISE)
+    error = term_errors(solution, force_m_s2[used], gravity_m_s2, sigma)
+    return _result(solution, error, used, force_m_s2, gravity_m_s2)
 
 
-def accel_jacobian(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vector:
-    """Return the derivatives of the residuals, shape ``(P, 6)``.
+def term_errors(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float, sigma: float) -> Vector:
+    """Return standard errors, offsets in m/s^2, shape ``(9,)``; infinite if poses are missing.
 
     Parameters
     ----------
     unknowns
-        Offsets in units of gravity, then scales, shape ``(6,)``.
+        Where to take the derivatives, shape ``(9,)``.
     force_m_s2
         Mean readings, shape ``(P, 3)``.
     gravity_m_s2
         Magnitude of gravity.
+    sigma
+        Standard deviation of a pose, m/s^2.
     """
-    centred = force_m_s2 - unknowns[:3] * gravity_m_s2
-    true = (1.0 + unknowns[3:]) * centred
-    up = true / np.linalg.norm(true, axis=1, keepdims=True)
-    return np.hstack((-up * (1.0 + unknowns[3:]) * gravity_m_s2, up * centred))
+    if len(force_m_s2) < TERMS:
+        return np.full(UNKNOWNS, np.inf)
+    rows = np.vstack((jacobian(unknowns, force_m_s2, gravity_m_s2) / sigma, prior_rows()))
+    error: Vector = np.sqrt(np.diag(covariance(rows)))
+    error[:3] *= gravity_m_s2
+    return error
 
 
-def _residual(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vector:
-    true = (1.0 + unknowns[3:]) * (force_m_s2 - unknowns[:3] * gravity_m_s2)
-    residual: Vector = np.linalg.norm(true, axis=1) - gravity_m_s2
-    return residual
+def prior_rows() -> Vector:
+    """Return the rows that keep T's numbers small, in units of their deviation, ``(3, 9)``."""
+    return np.eye(UNKNOWNS)[TERMS:] / SKEW_PRIOR
 
 
-def _solve(force_m_s2: Vector, gravity_m_s2: float, *, loss: str) -> Vector:
-    found = least_squares(
-        _residual,
-        np.zeros(UNKNOWNS),
-        jac=accel_jacobian,
-        loss=loss,
-        f_scale=NOISE.sigma,
-        args=(force_m_s2, gravity_m_s2),
-    )
+def standard_errors_over_limits(error: Vector) -> Vector:
+    """Return standard errors of the six terms, offsets in m/s^2 first, over their limits."""
+    limit = np.repeat((OFFSET_ERROR_LIMIT_M_S2, SCALE_ERROR_LIMIT), 3)
+    ratio: Vector = error[:TERMS] / limit
+    return ratio
+
+
+def _suffices(error: Vector, times: float) -> bool:
+    return bool((standard_errors_over_limits(error) <= times).all())
+
+
+def _solve(force_m_s2: Vector, gravity_m_s2: float, *, loss: Literal["cauchy", "linear"]) -> Vector:
+    prior = NOISE.sigma * prior_rows()
+
+    def errors(unknowns: Vector) -> Vector:
+        return np.concatenate((residual(unknowns, force_m_s2, gravity_m_s2), prior @ unknowns))
+
+    def slopes(unknowns: Vector) -> Vector:
+        return np.vstack((jacobian(unknowns, force_m_s2, gravity_m_s2), prior))
+
+    found = least_squares(errors, np.zeros(UNKNOWNS), jac=slopes, loss=loss, f_scale=NOISE.sigma)
     return np.asarray(found.x, dtype=np.float64)
 
 
-def _errors(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float, sigma: float) -> Vector:
-    """Return standard errors of offsets, m/s^2, and scales, shape ``(6,)``; infinite if unknown."""
-    if len(force_m_s2) < UNKNOWNS:
-        return np.full(UNKNOWNS, np.inf)
-    error = sigma * np.sqrt(np.diag(covariance(accel_jacobian(unknowns, force_m_s2, gravity_m_s2))))
-    error[:3] *= gravity_m_s2
-    return np.asarray(error, dtype=np.float64)
-
-
-def _undetermined(before: Vector, error: Vector) -> AccelFit:
+def _result(
+    solution: Vector, error: Vector, used: Flags, force_m_s2: Vector, gravity_m_s2: float
+) -> AccelFit:
+    six = np.concatenate((solution[:TERMS], np.zeros(UNKNOWNS - TERMS)))
+    slopes = jacobian(solution, force_m_s2[used], gravity_m_s2)[:, :TERMS]
+    whole = bool(np.isfinite(error).all())
     return AccelFit(
-        offset_m_s2=np.zeros(3),
-        scale=np.zeros(3),
+        offset_m_s2=solution[:3] * gravity_m_s2,
+        scale=solution[3:TERMS].copy(),
+        skew_rad=solution[TERMS:].copy(),
         offset_error_m_s2=error[:3].copy(),
-        scale_error=error[3:].copy(),
-        used=np.ones(len(before), dtype=np.bool_),
-        before_m_s2=before,
-        after_m_s2=before.copy(),
-        condition=float("inf"),
+        scale_error=error[3:TERMS].copy(),
+        skew_error_rad=error[TERMS:].copy(),
+        used=used,
+        before_m_s2=np.linalg.norm(force_m_s2, axis=1) - gravity_m_s2,
+        after_m_s2=residual(six, force_m_s2, gravity_m_s2),
+        model_m_s2=residual(solution, force_m_s2, gravity_m_s2),
+        condition=float(np.linalg.cond(slopes)) if whole else float("inf"),
     )
 
 
 def _require_sensible(solution: Vector) -> None:
-    axis = int(np.argmax(np.abs(solution[3:])))
+    axis = int(np.argmax(np.abs(solution[3:TERMS])))
     if abs(solution[3 + axis]) > LARGEST_SCALE:
         raise CalibrationError(
             f"the scale of the accelerometer's {'xyz'[axis]} axis would be off by "

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hostkit.calibration.poses import MAX_STEP_S, WINDOW_S, Pose
+from hostkit.calibration.poses import MAX_STEP_S, WINDOW_S, Flags, Pose
 from hostkit.recordings import Recording
 from hostkit.recordings.recording import Vector
 from hostkit.recordings.sanity.clipping import NARROWEST_GYRO_RAD_S, clips
@@ -75,7 +75,7 @@ def _turn(recording: Recording, before: Pose, after: Pose) -> Turn:
     )
 
 
-def _clipped(recording: Recording) -> Vector:
+def _clipped(recording: Recording) -> Flags:
     """Return which samples are at the end of the gyroscope's range, shape ``(N,)``."""
     rate = recording.angular_rate_rad_s
     at_end = np.zeros(len(recording), dtype=np.bool_)

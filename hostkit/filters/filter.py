@@ -7,6 +7,8 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.filters.sensor_terms import Calibrated, take_no_terms
+from hostkit.provenance import CalibrationTerm
 from hostkit.records import FilterDesign
 from hostkit.spec import FixedPointSpec
 
@@ -177,6 +179,8 @@ class Filter(Generic[SpecT]):
         What templates see as ``filter``.
     setting_words
         What the registers of an FPGA can change, in the order of ``hk_settings_t``.
+    calibrated
+        A design with what it has a place for of the terms of a calibration.
     """
 
     name: str
@@ -189,3 +193,4 @@ class Filter(Generic[SpecT]):
     facts: Callable[[FilterDesign], tuple[Fact, ...]]
     context: Callable[[FilterDesign, SpecT], object]
     setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]
+    calibrated: Callable[[FilterDesign, tuple[CalibrationTerm, ...]], Calibrated] = take_no_terms

@@ -1,5 +1,6 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.calibration import calibrated
 from hostkit.filters.complementary.context import filter_context
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
@@ -49,6 +50,7 @@ __all__ = [
     "ParameterKind",
     "RunTimeParameter",
     "Settings",
+    "calibrated",
     "crossover_hz",
     "device_parameters",
     "eta_from_tau",
@@ -89,4 +91,5 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     facts=facts,
     context=filter_context,
     setting_words=setting_words,
+    calibrated=calibrated,
 )
