@@ -31,7 +31,7 @@ def residual(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vecto
     gravity_m_s2
         Magnitude of gravity.
     """
-    true = _straight(unknowns, force_m_s2, gravity_m_s2) @ _square(unknowns)
+    true = _straight(unknowns, force_m_s2, gravity_m_s2) @ square(unknowns)
     value: Vector = np.linalg.norm(true, axis=1) - gravity_m_s2
     return value
 
@@ -39,10 +39,10 @@ def residual(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vecto
 def jacobian(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vector:
     """Return the derivatives of the residuals, shape ``(P, 9)``; parameters as of `residual`."""
     straight = _straight(unknowns, force_m_s2, gravity_m_s2)
-    true = straight @ _square(unknowns)
+    true = straight @ square(unknowns)
     length = np.linalg.norm(true, axis=1, keepdims=True)
     up = np.divide(true, length, out=np.zeros_like(true), where=length > 0.0)
-    pulled = up @ _square(unknowns)
+    pulled = up @ square(unknowns)
     skew = [up[:, i] * straight[:, j] + up[:, j] * straight[:, i] for i, j in PAIRS]
     return np.hstack(
         (
@@ -58,7 +58,8 @@ def _straight(unknowns: Vector, force_m_s2: Vector, gravity_m_s2: float) -> Vect
     return straight
 
 
-def _square(unknowns: Vector) -> Vector:
+def square(unknowns: Vector) -> Vector:
+    """Return T, shape ``(3, 3)``."""
     matrix = np.eye(3)
     for (i, j), value in zip(PAIRS, unknowns[TERMS:].tolist(), strict=True):
         matrix[i, j] = matrix[j, i] = value

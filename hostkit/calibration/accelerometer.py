@@ -16,7 +16,14 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from hostkit.calibration.accel_model import TERMS, UNKNOWNS, jacobian, residual
-from hostkit.calibration.least_squares import Flags, Noise, covariance, good_rows, sigma_of
+from hostkit.calibration.least_squares import (
+    TIMES_TYPICAL,
+    Flags,
+    Noise,
+    covariance,
+    good_rows,
+    sigma_of,
+)
 from hostkit.errors import CalibrationError
 from hostkit.recordings.recording import Vector
 from hostkit.records import read_only
@@ -95,8 +102,8 @@ class AccelFit:
 def fit_accelerometer(force_m_s2: Vector, gravity_m_s2: float) -> AccelFit:
     """Fit offset and scale to the mean forces of poses.
 
-    The first fit weighs bad poses down (Cauchy's loss); poses far from it are left out of the
-    second, which is plain least squares.
+    A fit that weighs bad poses down tells which are bad; these are left out of the last one, which
+    is plain least squares.
 
     Parameters
     ----------
@@ -114,9 +121,9 @@ def fit_accelerometer(force_m_s2: Vector, gravity_m_s2: float) -> AccelFit:
     solution, used = np.zeros(UNKNOWNS), np.ones(len(force_m_s2), dtype=np.bool_)
     if not _suffices(expected[:TERMS], HOPELESS):
         return _result(solution, expected, used, force_m_s2, gravity_m_s2)
-    robust = _solve(force_m_s2, gravity_m_s2, loss="cauchy")
+    robust = _robust(force_m_s2, gravity_m_s2)
     used = good_rows(np.abs(residual(robust, force_m_s2, gravity_m_s2)), NOISE, TERMS + 2)
-    solution = _solve(force_m_s2[used], gravity_m_s2, loss="linear")
+    solution = _solve(force_m_s2[used], gravity_m_s2, robust, "linear")
     _require_sensible(solution)
     sigma = sigma_of(residual(solution, force_m_s2[used], gravity_m_s2), TERMS, NOISE)
     error = term_errors(solution, force_m_s2[used], gravity_m_s2, sigma)
@@ -161,7 +168,30 @@ def _suffices(error: Vector, times: float) -> bool:
     return bool((standard_errors_over_limits(error) <= times).all())
 
 
-def _solve(force_m_s2: Vector, gravity_m_s2: float, *, loss: Literal["cauchy", "linear"]) -> Vector:
+def _robust(force_m_s2: Vector, gravity_m_s2: float) -> Vector:
+    """Return a fit that bad poses do not bend, by Cauchy's loss.
+
+    That loss has many minima: a bad pose far from all others can draw the fit to it. So it starts
+    from the best, by that loss, of the plain fits to all poses and to all but one.
+    """
+    plain = _solve(force_m_s2, gravity_m_s2, np.zeros(UNKNOWNS), "linear")
+    size = np.abs(residual(plain, force_m_s2, gravity_m_s2))
+    if size.max() < TIMES_TYPICAL * NOISE.sigma:
+        return plain
+    starts = [plain]
+    for i in range(len(force_m_s2)):
+        others = np.delete(force_m_s2, i, axis=0)
+        starts.append(_solve(others, gravity_m_s2, plain, "linear"))
+    loss = [
+        float(np.log1p((residual(start, force_m_s2, gravity_m_s2) / NOISE.sigma) ** 2).sum())
+        for start in starts
+    ]
+    return _solve(force_m_s2, gravity_m_s2, starts[int(np.argmin(loss))], "cauchy")
+
+
+def _solve(
+    force_m_s2: Vector, gravity_m_s2: float, start: Vector, loss: Literal["cauchy", "linear"]
+) -> Vector:
     prior = NOISE.sigma * prior_rows()
 
     def errors(unknowns: Vector) -> Vector:
@@ -170,7 +200,7 @@ def _solve(force_m_s2: Vector, gravity_m_s2: float, *, loss: Literal["cauchy", "
     def slopes(unknowns: Vector) -> Vector:
         return np.vstack((jacobian(unknowns, force_m_s2, gravity_m_s2), prior))
 
-    found = least_squares(errors, np.zeros(UNKNOWNS), jac=slopes, loss=loss, f_scale=NOISE.sigma)
+    found = least_squares(errors, start, jac=slopes, loss=loss, f_scale=NOISE.sigma)
     return np.asarray(found.x, dtype=np.float64)
 
 

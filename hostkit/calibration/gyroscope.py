@@ -33,7 +33,9 @@ LEAST_BIAS_ERROR_RAD_S = 0.01 * RAD_PER_DEG
 """A bias at rest is not better known for the motion: gyroscopes feel acceleration a little."""
 LARGEST_SCALE = 0.25
 CONTRADICTION_RAD = 30.0 * RAD_PER_DEG
-"""If half of the turns are still off by more, gyroscope and accelerometer contradict each other."""
+CONTRADICTION_SHARE = 0.2
+"""If a fifth of the turns are still off by more, gyroscope and accelerometer contradict each other.
+"""
 STEPS = 12
 CONVERGED = 1e-6
 EQUATIONS_PER_TURN = 2
@@ -170,12 +172,13 @@ def _descend(
     return unknowns
 
 
-def _require_sensible(unknowns: Vector, after: Vector) -> None:
-    if after.size and float(np.median(after)) > CONTRADICTION_RAD:
+def _require_sensible(unknowns: Vector, model: Vector) -> None:
+    wrong = int(np.count_nonzero(model > CONTRADICTION_RAD))
+    if wrong > CONTRADICTION_SHARE * model.size:
         raise CalibrationError(
-            f"gyroscope and accelerometer contradict each other: half of {after.size} turns are "
-            f"off by more than {np.degrees(np.median(after)):.0f} deg. An axis has the wrong sign, "
-            "the unit of the rate is wrong, or the times are; see hostkit import --columns"
+            f"gyroscope and accelerometer contradict each other: {wrong} of {model.size} turns are "
+            f"off by more than {np.degrees(CONTRADICTION_RAD):.0f} deg. An axis has the wrong "
+            "sign, the unit of the rate is wrong, or the times are; see hostkit import --columns"
         )
     axis = int(np.argmax(np.abs(unknowns[:3])))
     if abs(unknowns[axis]) > LARGEST_SCALE:

@@ -16,6 +16,8 @@ WINDOW_S = 1.0
 MAX_STEP_S = 0.5
 """A longer time step ends a pose, and no motion across it is integrated."""
 MIN_SAMPLES = 5
+EDGE = 0.1
+"""Share of a window that is cut off at both ends of a pose."""
 TIMES_QUIETEST = 4.0
 """A window is still if it spreads by less than this many times the quietest tenth."""
 RATE_SPREAD_RAD_S = (0.004, 0.03)
@@ -148,7 +150,11 @@ def _drift(force: Vector, width: int) -> Vector:
     return drift
 
 
-def _pose(recording: Recording, index: int, first: int, end: int, width: int) -> Pose:
+def _pose(recording: Recording, index: int, begin: int, stop: int, width: int) -> Pose:
+    """Return one pose, its ends cut off: there the motion may have begun."""
+    cut = int(EDGE * width)
+    first, end = begin + cut, stop - cut
+    width -= 2 * cut
     rows, head = slice(first, end), slice(first, first + width)
     tail = slice(end - width, end)
     force = recording.specific_force_m_s2

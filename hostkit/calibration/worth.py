@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hostkit.attitude import inclination_rad
-from hostkit.calibration.accel_model import TERMS, jacobian
+from hostkit.calibration.accel_model import TERMS, jacobian, square
 from hostkit.calibration.accelerometer import NOISE, AccelFit, fit_accelerometer, prior_rows
 from hostkit.recordings.recording import Vector
 
@@ -23,7 +23,8 @@ class TiltWorth:
     before_rms_rad, before_max_rad
         Without the calibration, if the calibration is right.
     after_rms_rad
-        With it, from the standard errors, as if these were independent.
+        With it: what axes that are not square leave, and the standard errors of the six numbers as
+        if these were independent.
     """
 
     before_rms_rad: float
@@ -42,14 +43,15 @@ class Halves:
 def tilt_worth(fit: AccelFit, gravity_m_s2: float) -> TiltWorth:
     """Return what a calibration changes, for a determined one."""
     up = _directions()
-    reading = gravity_m_s2 * up / (1.0 + fit.scale) + fit.offset_m_s2
-    before = inclination_rad(reading, up)
+    straight = up @ np.linalg.inv(square(fit.unknowns))
+    reading = gravity_m_s2 * straight / (1.0 + fit.scale) + fit.offset_m_s2
+    before, left = inclination_rad(reading, up), inclination_rad(straight, up)
     spread = fit.offset_error_m_s2**2 + (gravity_m_s2 * up * fit.scale_error) ** 2
     across = ((1.0 - up**2) * spread).sum(axis=1) / gravity_m_s2**2
     return TiltWorth(
         before_rms_rad=float(np.sqrt(np.mean(before**2))),
         before_max_rad=float(before.max()),
-        after_rms_rad=float(np.sqrt(np.mean(across))),
+        after_rms_rad=float(np.sqrt(np.mean(left**2 + across))),
     )
 
 
