@@ -17,7 +17,6 @@ from scipy.optimize import least_squares
 
 from hostkit.calibration.accel_model import TERMS, UNKNOWNS, jacobian, residual
 from hostkit.calibration.least_squares import (
-    TIMES_TYPICAL,
     Flags,
     Noise,
     covariance,
@@ -30,6 +29,8 @@ from hostkit.records import read_only
 
 NOISE = Noise(sigma=0.02, least_bad=0.1)
 """m/s^2: 2 mg for the nonlinearity and the noise of a cheap part; 10 mg make a pose bad."""
+SUSPICIOUS = 2.0
+"""Residuals of a plain fit, in units of the assumed noise, from which on bad poses are looked for."""
 SKEW_PRIOR = 0.01
 """Standard deviation assumed of T's numbers; the MPU-6050's data sheet allows 0.02."""
 OFFSET_ERROR_LIMIT_M_S2 = 0.06
@@ -176,7 +177,7 @@ def _robust(force_m_s2: Vector, gravity_m_s2: float) -> Vector:
     """
     plain = _solve(force_m_s2, gravity_m_s2, np.zeros(UNKNOWNS), "linear")
     size = np.abs(residual(plain, force_m_s2, gravity_m_s2))
-    if size.max() < TIMES_TYPICAL * NOISE.sigma:
+    if size.max() < SUSPICIOUS * NOISE.sigma:
         return plain
     starts = [plain]
     for i in range(len(force_m_s2)):

@@ -16,7 +16,8 @@ LOOSE = 1.0
 def missing_faces(force_m_s2: Vector, gravity_m_s2: float) -> tuple[str, ...]:
     """Return the faces that should point up in more poses, best first; none if nothing is missing.
 
-    The face that brings the standard errors down most is added, until each is within its limit.
+    The face that brings the standard errors down most is added, until each is within its limit;
+    then those are taken off that have become needless.
 
     Parameters
     ----------
@@ -27,18 +28,20 @@ def missing_faces(force_m_s2: Vector, gravity_m_s2: float) -> tuple[str, ...]:
     """
     force = np.asarray(force_m_s2, dtype=np.float64).reshape(-1, 3)
     missing: list[int] = []
-    while len(missing) < len(FACES) and _excess(force, gravity_m_s2) > 0.0:
+    while len(missing) < len(FACES) and _excess(force, missing, gravity_m_s2) > 0.0:
         left = [i for i in range(len(FACES)) if i not in missing]
-        trials = [np.vstack((force, gravity_m_s2 * FACES[i])) for i in left]
-        best = int(np.argmin([_excess(trial, gravity_m_s2) for trial in trials]))
-        missing.append(left[best])
-        force = trials[best]
+        missing.append(min(left, key=lambda i: _excess(force, [*missing, i], gravity_m_s2)))
+    for face in tuple(missing):
+        others = [i for i in missing if i != face]
+        if _excess(force, others, gravity_m_s2) == 0.0:
+            missing = others
     return tuple(FACE_NAMES[i] for i in missing)
 
 
-def _excess(force_m_s2: Vector, gravity_m_s2: float) -> float:
-    """Return the sum of standard errors over limits; 0 if each is within its limit."""
-    slopes = jacobian(np.zeros(UNKNOWNS), force_m_s2, gravity_m_s2) / NOISE.sigma
+def _excess(force_m_s2: Vector, faces: list[int], gravity_m_s2: float) -> float:
+    """Return the sum of standard errors over limits with some faces added; 0 if each is kept."""
+    poses = np.vstack((force_m_s2, gravity_m_s2 * FACES[faces]))
+    slopes = jacobian(np.zeros(UNKNOWNS), poses, gravity_m_s2) / NOISE.sigma
     loose = np.eye(UNKNOWNS)[:TERMS] / LOOSE
     error = np.sqrt(np.diag(covariance(np.vstack((slopes, prior_rows(), loose)))))
     error[:3] *= gravity_m_s2

@@ -146,7 +146,7 @@ def test_a_gyroscope_of_the_wrong_sign_is_refused(axis: int) -> None:
 def test_a_wrong_range_of_the_accelerometer_is_refused() -> None:
     recording = posed(FACES)
     doubled = replace(recording, specific_force_m_s2=2.0 * recording.specific_force_m_s2)
-    with pytest.raises(CalibrationError, match="axis would be off by -5. %; the limit is 25 %"):
+    with pytest.raises(CalibrationError, match=r"axis would be off by -5. %; the limit is 25 %"):
         calibrate((doubled,))
 
 
