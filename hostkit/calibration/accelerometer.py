@@ -30,7 +30,7 @@ from hostkit.records import read_only
 NOISE = Noise(sigma=0.02, least_bad=0.1)
 """m/s^2: 2 mg for the nonlinearity and the noise of a cheap part; 10 mg make a pose bad."""
 SUSPICIOUS = 2.0
-"""Residuals of a plain fit, in units of the assumed noise, from which on bad poses are looked for."""
+"""Residual of a plain fit, in units of the assumed noise, from which on bad poses are sought."""
 SKEW_PRIOR = 0.01
 """Standard deviation assumed of T's numbers; the MPU-6050's data sheet allows 0.02."""
 OFFSET_ERROR_LIMIT_M_S2 = 0.06
