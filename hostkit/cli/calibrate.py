@@ -148,8 +148,8 @@ def _left_out(
 def _show(calibration: Calibration, taken: Calibrated, output: Path, name: str) -> None:
     accel, gyro, temperature = calibration.accel, calibration.gyro, calibration.temperature
     click.echo(
-        f"{len(calibration.poses)} poses and {len(calibration.turns)} turns in "
-        f"{len(calibration.recordings)} recordings; gravity {calibration.gravity_m_s2:g} m/s^2"
+        f"poses {len(calibration.poses)}, turns {len(calibration.turns)}, recordings "
+        f"{len(calibration.recordings)}; gravity {calibration.gravity_m_s2:g} m/s^2"
     )
     if temperature is not None:
         low, high = temperature.lowest_c, temperature.highest_c

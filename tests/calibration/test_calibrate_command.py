@@ -1,6 +1,7 @@
 """``hostkit calibrate imu`` as it is called."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,22 @@ def test_the_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert written.parameter("gyro_scale_roll") == pytest.approx(truth["gyro_scale"][0], abs=3e-3)
     assert written.calibration is not None
     assert written.calibration.turns == len(MANY) - 1
+
+
+def keys(value: object) -> set[str]:
+    if isinstance(value, dict):
+        return set(value) | {key for inner in value.values() for key in keys(inner)}
+    if isinstance(value, list):
+        return {key for inner in value for key in keys(inner)}
+    return set()
+
+
+def test_every_key_is_documented(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["calibrate", "imu", "design.json", "many.npz", "-o", "out.json", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    page = (Path(__file__).resolve().parents[2] / "docs" / "calibration.md").read_text("utf-8")
+    named = {*re.findall(r"`([a-z0-9_]+)`", page), "schema", *document["parameters"]}
+    assert keys(document) - named == set()
 
 
 def test_the_screen_and_the_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
