@@ -2,7 +2,6 @@
 position, and the same without any motion."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -47,7 +46,7 @@ def posed(
         )
         return MotionPath(roll_rad=roll, pitch_rad=pitch, yaw_rad=yaw)
 
-    recording = simulate(
+    return simulate(
         Profile(name="posed", title="put down again and again", draw=draw),
         duration_s=HOLD_S * len(poses) - 0.1,
         rate_hz=100.0,
@@ -55,7 +54,6 @@ def posed(
         errors=errors,
         rng=np.random.default_rng(seed),
     )
-    return replace(recording, up_reference=None)
 
 
 def true_terms(errors: SensorErrors = ERRORS) -> dict[str, np.ndarray]:

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,15 +10,18 @@ import pytest
 from calibration_cases import ERRORS, FACES, MANY, posed, true_terms
 from designs import design
 
+from hostkit.attitude import inclination_rad, up_from_tilt
 from hostkit.cli.main import run
 from hostkit.design_file import design_text, digest, from_document, load_design, save_design
 from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.complementary import parameter
+from hostkit.filters.observer import default_parameters
 from hostkit.filters.sensor_terms import Calibrated, take_no_terms, take_sensor_terms
 from hostkit.provenance import TERM_UNITS, CalibrationTerm
-from hostkit.recordings import save
+from hostkit.recordings import Recording, save
 from hostkit.records import FilterDesign
+from hostkit.units import DEG_PER_RAD, STANDARD_GRAVITY_M_S2
 
 TERMS = tuple(
     CalibrationTerm(kind=kind, axis=axis, value=0.01 * (axis + 1) + 0.1 * i, standard_error=1e-3)
@@ -33,6 +37,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     save(posed(MANY), Path("many.npz"))
     save(posed(FACES[:5]), Path("five.npz"))
     return tmp_path
+
+
+def observer() -> FilterDesign:
+    return replace(design(), filter="observer", parameters=default_parameters())
 
 
 def taken(of: FilterDesign) -> Calibrated:
@@ -105,23 +113,48 @@ def test_options_stand_in_the_project_file(
 
 
 def test_missing_poses_are_refused_only_where_the_filter_has_a_place_for_them(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = ["calibrate", "imu", "design.json", "five.npz", "-o", "out.json"]
     assert run(line) == 0
     assert "poses are missing with +x up" in capsys.readouterr().err
     Path("out.json").unlink()
-
-    def all_of_it(of: FilterDesign, terms: tuple[CalibrationTerm, ...]) -> Calibrated:
-        return Calibrated(design=of, taken=tuple(term.name for term in terms))
-
-    monkeypatch.setattr("hostkit.cli.calibrate._calibrated", all_of_it)
+    save_design(observer(), Path("design.json"))
     assert run(line) == 1
     said = capsys.readouterr().err
     assert "5 poses do not determine the accelerometer" in said
     assert "+x up" in said
     assert not Path("out.json").exists()
     assert run([*line, "--sensors", "gyro"]) == 0
+    names = {p.name for p in load_design(Path("out.json")).parameters}
+    assert "gyro_bias_z_rad_s" in names
+    assert "accel_offset_x_m_s2" not in names
+
+
+def test_the_observer_takes_all_and_tells_the_tilt_at_rest(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Another recording of the sensor: only the calibrated design knows where up is."""
+    save_design(observer(), Path("design.json"))
+    line = ["calibrate", "imu", "design.json", "many.npz", "-o", "out.json", "--json"]
+    assert run(line) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["taken"] == [term["name"] for term in document["terms"]]
+    assert not [text for text in document["warnings"] if "no place" in text]
+    other = posed(MANY[::-1], seed=9)
+    before, after = (
+        tilt_error_deg(load_design(Path(f)), other) for f in ("design.json", "out.json")
+    )
+    assert before > 1.5
+    assert after < 0.35
+
+
+def tilt_error_deg(of: FilterDesign, recording: Recording) -> float:
+    force_g = recording.specific_force_m_s2 / STANDARD_GRAVITY_M_S2
+    angles = FILTERS[of.filter].run_float(of, recording.angular_rate_rad_s, force_g)
+    up = up_from_tilt(angles[:, 0], angles[:, 1])
+    error = inclination_rad(up, recording.up_reference)
+    return float(np.sqrt(np.mean(error**2))) * DEG_PER_RAD
 
 
 def test_the_complementary_filter_takes_its_axes_through_the_mounting() -> None:
