@@ -16,6 +16,7 @@ from hostkit.validation.judged import Judged
 from hostkit.validation.order import SampleOrder, places
 from hostkit.validation.residual import ResidualTracker
 from hostkit.validation.retuning import Model, Retuning, runs
+from hostkit.validation.state_follower import StateFollower
 from hostkit.validation.thresholds import Thresholds
 
 Vector = NDArray[np.float64]
@@ -29,6 +30,9 @@ class Validator:
     Every step is computed again from the raw counts and the state *before* it, which the device
     sent with the previous sample, so that a loss costs the check of one step and no more. The
     float model runs on from step to step; after a loss it starts from the device's state.
+
+    The samples of a filter with a long state do not hold all of it: its models run on from step
+    to step, and after a loss until the device tells its state, the samples are not judged.
 
     A device that says RETUNED is judged with the parameters that it told; until it has told all of
     them its samples are not judged.
@@ -66,9 +70,10 @@ class Validator:
         self._as_designed, self._tolerance_rad = as_designed, tolerance_rad
         self._retuning = Retuning(design)
         self.spec = self._retuning.designed.spec
-        self._follower = Follower(design, self._retuning.designed, tolerance_rad)
+        follower = StateFollower if self.spec.tells_state else Follower
+        self._follower = follower(design, self._retuning.designed, tolerance_rad)
         self._order = SampleOrder()
-        self._elapsed = 0
+        self._elapsed = self._wait = 0
         self._is_retuned = False
         self.restart()
 
@@ -76,6 +81,7 @@ class Validator:
         """Forget the figures so far; the models go on."""
         self._order.forget_figures()
         self.samples = self.checked = self.mismatches = self._unjudged = 0
+        self._waiting = self._longest_wait = 0
         self._was_retuned = self._is_retuned
         self._retuning.drop_withheld()
         self._trackers = tuple(ResidualTracker(axis, self._period_s) for axis in self._axes)
@@ -86,6 +92,7 @@ class Validator:
         The device may have started anew, so what it told of its parameters is forgotten.
         """
         self._order.begin()
+        self._follower.forget()
         self._retuning.forget()
 
     def told(self, name: str, value: float) -> None:
@@ -146,6 +153,7 @@ class Validator:
         restarts = self._order.restarts
         found = places(self._order, trace.sequence.tolist(), contents, trace.restarted.tolist())
         names = [place for place, _ in found]
+        anew = "anew" in names
         self.samples += len(names) - names.count("repeated")
         if self._order.restarts > restarts:
             self._retuning.forget()
@@ -154,9 +162,20 @@ class Validator:
         kept = np.array([name not in ("late", "repeated") for name in names], dtype=np.bool_)
         follows = np.array([name == "follows" for name in names], dtype=np.bool_)
         step = np.array([step for _, step in found], dtype=np.int64)
-        if kept.all():
-            return trace, step, follows
-        return _part(trace, kept), step[kept], follows[kept]
+        if not kept.all():
+            trace, step, follows = _part(trace, kept), step[kept], follows[kept]
+        self._hear(trace, anew=anew)
+        return trace, step, follows
+
+    def _hear(self, trace: AngleTrace, *, anew: bool) -> None:
+        """Count wrong states that came apart from their samples."""
+        wrong = self._follower.hear(trace, anew=anew)
+        if wrong and self._is_retuned and self._retuning.doubted:
+            self._retuning.withhold(wrong, wrong)
+            self._unjudged += wrong
+            return
+        self.mismatches += wrong
+        self.checked += wrong
 
     def _model(self, *, is_retuned: bool) -> Model | None:
         self._is_retuned = is_retuned
@@ -174,19 +193,29 @@ class Validator:
         steps = self._follower.run(used, trace, follows)
         self._count_withheld()
         wrong, checked = int(steps.wrong.sum()), int(steps.judged.sum())
+        if self._follower.waits:
+            self._count_waiting(steps.judged)
         if wrong and self._is_retuned and self._retuning.doubted:
             first = int(steps.wrong.argmax())
             later = int(steps.judged[first:].sum())
             self._retuning.withhold(wrong, later)
             steps.withdraw(first)
             self._follower.skip(trace)
-            self._unjudged += len(trace) - first
+            self._unjudged += later if self._follower.waits else len(trace) - first
             wrong, checked = 0, checked - later
         elif not wrong:
-            self._retuning.agreed(checked)
+            self._retuning.agreed(steps.confirmed)
         self.mismatches += wrong
         self.checked += checked
         return steps
+
+    def _count_waiting(self, judged: BoolArray) -> None:
+        """Count samples that came before the state was told."""
+        self._waiting += int((~judged).sum())
+        self._unjudged += int((~judged).sum())
+        for known in judged.tolist():
+            self._wait = 0 if known else self._wait + 1
+            self._longest_wait = max(self._longest_wait, self._wait)
 
     def _count_withheld(self) -> None:
         """Count wrong steps that were withheld, now that the device has told the same again."""
@@ -253,6 +282,8 @@ class Validator:
             late=self._order.late,
             repeated=self._order.repeated,
             unjudged=min(self.samples, self._unjudged + self._order.thinned),
+            waiting=min(self.samples, self._waiting),
+            longest_wait_s=self._longest_wait * self._period_s,
             stride=self._order.widest_stride,
             tolerance_rad=self._tolerance_rad,
             untold=self.untold,
@@ -270,4 +301,5 @@ def _part(trace: AngleTrace, which: slice | BoolArray) -> AngleTrace:
         state_raw=trace.state_raw[which],
         restarted=trace.restarted[which],
         retuned=None if trace.retuned is None else trace.retuned[which],
+        told=trace.told,
     )
