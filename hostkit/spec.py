@@ -4,8 +4,11 @@ from dataclasses import dataclass
 
 from hostkit.fixedpoint import Coefficient
 from hostkit.mounting import Mounting
-from hostkit.records import Axis, TiltMethod
+from hostkit.records import Axis
 from hostkit.units import RAD_PER_HALF_TURN_LSB
+
+SAMPLE_HIDDEN_WORDS = 2
+"""Hidden words that the message of a sample has room for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,49 +55,13 @@ class StateWord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ForceGate:
-    """The specific forces that correct: lowest to highest sum of squared counts, both included."""
-
-    lowest: int
-    highest: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BiasIntegral:
-    """How the gyroscope bias follows the correction.
-
-    Attributes
-    ----------
-    gain
-        Units of bias per half-turn unit of innovation.
-    fraction_bits
-        Fraction bits of the bias, whose unit is the half-turn unit per sample.
-    limit_raw
-        Largest bias, in its own units.
-    """
-
-    gain: Coefficient
-    fraction_bits: int
-    limit_raw: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class FixedPointSpec:
-    """A design in integers: all that templates and the integer model know of the filter.
+    """A design in integers: what all filters have in common.
 
     Attributes
     ----------
-    rate_gains
-        Half-turn units of angle per count of angular rate and sample, one for each axis.
-    blend
-        1 - eta, the weight of the tilt measured from specific force.
-    tilt_offset_raw
-        Taken off the measured tilt of each axis, half-turn units.
-    gyro_bias_raw
-        Taken off each step of the rate, half-turn units per sample; with an integral where it
-        starts, with its fraction bits.
-    gate, integral
-        None where the filter has none.
+    arctan
+        Constants of the arc tangent, which gives the angles of every filter.
     gravity_count
         Accelerometer count of 1 g.
     hidden
@@ -107,14 +74,7 @@ class FixedPointSpec:
 
     filter: str
     axes: tuple[Axis, ...]
-    tilt: TiltMethod
     mounting: Mounting
-    rate_gains: tuple[Coefficient, ...]
-    blend: Coefficient
-    tilt_offset_raw: tuple[int, ...]
-    gyro_bias_raw: tuple[int, ...]
-    gate: ForceGate | None
-    integral: BiasIntegral | None
     arctan: ArctanTable
     gravity_count: int
     hidden: tuple[StateWord, ...]
@@ -126,3 +86,8 @@ class FixedPointSpec:
         """Worth of one unit of each word of the state, angles (rad) first."""
         angles = (RAD_PER_HALF_TURN_LSB,) * len(self.axes)
         return (*angles, *(word.per_unit for word in self.hidden))
+
+    @property
+    def tells_state(self) -> bool:
+        """Whether the hidden words have a message of their own: a sample's has no room."""
+        return len(self.hidden) > SAMPLE_HIDDEN_WORDS

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from hostkit.filters.complementary import BIAS_LIMIT_RAD_S, lower
+from hostkit.filters.complementary.spec import ForceGate
 from hostkit.records import FilterDesign
-from hostkit.spec import ForceGate
 
 FULL_SCALE = 32767
 

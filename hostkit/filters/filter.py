@@ -1,8 +1,8 @@
-"""What a filter is to the rest of hostkit: its models and its lowering, by name."""
+"""What a filter is to the rest of hostkit: its models, its lowering, what it says of itself."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from hostkit.spec import FixedPointSpec
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+SpecT = TypeVar("SpecT", bound=FixedPointSpec)
+SpecOfT = TypeVar("SpecOfT", bound=FixedPointSpec, contravariant=True)
 
 
 class RunFloat(Protocol):
@@ -27,16 +30,162 @@ class RunFloat(Protocol):
         """Run it."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Filter:
-    """One filter: lowering, float model, integer model, and a single step of the latter.
+class RunInteger(Protocol[SpecOfT]):
+    """The integer model, see :func:`hostkit.filters.complementary.run_integer`."""
 
-    Models take and give states, one row a sample: first the angles of the design's axes, then the
-    hidden words that the spec names.
+    def __call__(
+        self,
+        spec: SpecOfT,
+        accel_count: IntArray,
+        gyro_count: IntArray,
+        start: IntArray | None = None,
+    ) -> IntArray:
+        """Run it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fact:
+    """A number of a design that people want to read.
+
+    Attributes
+    ----------
+    name
+        Key of the number in documents; it ends with its unit.
+    label
+        What it is, for a person.
+    unit
+        Unit on the screen; empty for a plain number.
     """
 
     name: str
-    lower: Callable[[FilterDesign], FixedPointSpec]
+    label: str
+    value: float
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownParameter:
+    """A parameter that devices of a filter may have.
+
+    Attributes
+    ----------
+    name, unit
+        Its name on the link, and the unit of its value.
+    lowest, highest
+        What a device takes; None where that needs the sample rate of a design.
+    """
+
+    name: str
+    unit: str
+    lowest: float | None = None
+    highest: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeviceParameter:
+    """A parameter of the filter as a device of a design has it.
+
+    Attributes
+    ----------
+    name, unit
+        Its name on the link, and the unit of its value.
+    design_value
+        What a device tells that nothing was set on.
+    lowest, highest
+        What a device takes.
+    """
+
+    name: str
+    unit: str
+    design_value: float
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunTime:
+    """The parameters that a running device can change.
+
+    Attributes
+    ----------
+    known
+        Those that some design of the filter has.
+    parameters
+        Those that a design has, in the order of the device.
+    with_told
+        The design that a device runs which tells these values, by their names on the link. A value
+        that the device tells of the design itself leaves the design's own.
+    """
+
+    known: tuple[KnownParameter, ...]
+    parameters: Callable[[FilterDesign], tuple[DeviceParameter, ...]]
+    with_told: Callable[[FilterDesign, Mapping[str, float]], FilterDesign]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SettingWord:
+    """A setting that the registers of an FPGA can change while it runs.
+
+    Attributes
+    ----------
+    name
+        Element of the VHDL record ``hk_settings_t``.
+    title
+        What one unit of the word is.
+    raw
+        The word of the design; None where the design does not have the setting.
+    width, signed
+        Format of the word.
+    unit
+        Unit of the value that `to_raw` takes and `to_value` gives.
+    to_raw, to_value
+        From a value to the word, not yet rounded, and back.
+    """
+
+    name: str
+    title: str
+    raw: int | None
+    width: int
+    signed: bool
+    unit: str
+    to_raw: Callable[[float], float]
+    to_value: Callable[[int], float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Filter(Generic[SpecT]):
+    """One filter: all that the rest of hostkit knows of it.
+
+    Models take and give states, one row a sample: first the angles of the design's axes, then the
+    hidden words that the spec names.
+
+    Attributes
+    ----------
+    name, title
+        Its name in designs, and for a person.
+    lower
+        From a design to integers.
+    run_float, run_integer
+        The models, from a state or from the first sample.
+    step_integer
+        One step from each of N states, independently of each other.
+    run_time
+        What a running device can change.
+    facts
+        What people want to read of a design.
+    context
+        What templates see as ``filter``.
+    setting_words
+        What the registers of an FPGA can change, in the order of ``hk_settings_t``.
+    """
+
+    name: str
+    title: str
+    lower: Callable[[FilterDesign], SpecT]
     run_float: RunFloat
-    run_integer: Callable[[FixedPointSpec, IntArray, IntArray], IntArray]
-    step_integer: Callable[[FixedPointSpec, IntArray, IntArray, IntArray], IntArray]
+    run_integer: RunInteger[SpecT]
+    step_integer: Callable[[SpecT, IntArray, IntArray, IntArray], IntArray]
+    run_time: RunTime
+    facts: Callable[[FilterDesign], tuple[Fact, ...]]
+    context: Callable[[FilterDesign, SpecT], object]
+    setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]

@@ -9,11 +9,9 @@ from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
-from hostkit.records import FilterDesign
+from hostkit.records import Axis, FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
-from hostkit.render.filter_context import FilterContext, filter_context
-from hostkit.render.float_context import FloatContext, float_context
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.fpga_report import CellCounts, FpgaReport, fpga_report
@@ -22,7 +20,6 @@ from hostkit.render.mavlink_context import MavlinkContext, mavlink_context
 from hostkit.render.options import FirmwareOptions
 from hostkit.render.polar_context import PolarContext, polar_context
 from hostkit.render.registers import RegistersContext, register_map, registers_context
-from hostkit.render.run_time_context import RunTimeContext, run_time_context
 from hostkit.render.sensor_program import SensorProgram, sensor_program
 from hostkit.sensors import SENSORS, mpu6050
 from hostkit.sensors.low_pass import LowPassSection, accel_section, gyro_section
@@ -150,9 +147,7 @@ class RenderContext:
 
     design: DesignContext
     spec: FixedPointSpec
-    filter: FilterContext
-    real: FloatContext
-    run_time: RunTimeContext
+    filter: object
     arctan: ArctanContext
     polar: PolarContext
     root_fraction_bits: int
@@ -160,7 +155,6 @@ class RenderContext:
     mounting: tuple[MountingContext, ...]
     has_roll: bool
     has_pitch: bool
-    uses_arcsin: bool
     sensor: SensorContext
     sensor_program: SensorProgram
     link: LinkPlan
@@ -199,7 +193,8 @@ def render_context(
         If the design cannot be lowered, or does not fit the target's sensor rate or link, or
         there are options for a target of another kind.
     """
-    spec = FILTERS[design.filter].lower(design)
+    filter_ = FILTERS[design.filter]
+    spec = filter_.lower(design)
     chosen, fpga = DEFAULT_FPGA_OPTIONS, None
     if target.kind == "fpga":
         chosen = fpga_options_of(target, options)
@@ -211,9 +206,7 @@ def render_context(
     return RenderContext(
         design=_design_context(design),
         spec=spec,
-        filter=filter_context(spec, design.rate_hz),
-        real=float_context(design, spec),
-        run_time=run_time_context(design, spec),
+        filter=filter_.context(design, spec),
         arctan=arctan_context(spec.arctan),
         polar=polar_context(spec.arctan),
         root_fraction_bits=ROOT_FRACTION_BITS,
@@ -221,7 +214,6 @@ def render_context(
         mounting=_mounting_context(design.mounting),
         has_roll="roll" in spec.axes,
         has_pitch="pitch" in spec.axes,
-        uses_arcsin=spec.tilt == "arcsin",
         sensor=sensor,
         sensor_program=sensor_program(
             sensor.configuration,
@@ -232,12 +224,16 @@ def render_context(
         options=firmware,
         fpga=fpga,
         report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
-        mavlink=mavlink_context(
-            firmware.identity, firmware.system_id, () if spec.integral is None else spec.axes
-        ),
+        mavlink=mavlink_context(firmware.identity, firmware.system_id, _hidden_biases(spec)),
         registers=registers_context(register_map(design, spec, chosen)),
         target=target,
     )
+
+
+def _hidden_biases(spec: FixedPointSpec) -> tuple[Axis, ...]:
+    """Return the axes whose bias a sample's message tells."""
+    hidden = {word.name for word in spec.hidden}
+    return tuple(axis for axis in spec.axes if f"gyro_bias_{axis}" in hidden)
 
 
 def _design_context(design: FilterDesign) -> DesignContext:

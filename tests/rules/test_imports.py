@@ -37,6 +37,7 @@ FLOORS = (
         "errors",
         "files",
         "identifiers",
+        "literals",
     ),
 )
 """From top to bottom; an import may only point down, or stay within its room."""

@@ -1,5 +1,7 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.context import filter_context
+from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
 from hostkit.filters.complementary.gate import force_gate
 from hostkit.filters.complementary.integer_model import run_integer, step_integer
@@ -20,26 +22,42 @@ from hostkit.filters.complementary.parameters import (
 from hostkit.filters.complementary.run_time import (
     RUN_TIME,
     RunTimeParameter,
+    device_parameters,
+    known_parameters,
     limits,
+    link_name,
     told_by_device,
     with_told,
+    with_told_by_name,
 )
+from hostkit.filters.complementary.setting_words import setting_words
+from hostkit.filters.complementary.spec import BiasIntegral, ComplementarySpec, ForceGate
 from hostkit.filters.complementary.tilt import RATE_AXIS, measured_tilt_rad, measured_tilt_raw
+from hostkit.filters.filter import Filter, RunTime
 
 __all__ = [
     "BIAS_LIMIT_RAD_S",
     "BY_NAME",
+    "COMPLEMENTARY",
     "KINDS",
     "LEAST_FORCE_G",
     "RATE_AXIS",
     "RUN_TIME",
+    "BiasIntegral",
+    "ComplementarySpec",
+    "ForceGate",
     "ParameterKind",
     "RunTimeParameter",
     "Settings",
     "crossover_hz",
+    "device_parameters",
     "eta_from_tau",
+    "facts",
+    "filter_context",
     "force_gate",
+    "known_parameters",
     "limits",
+    "link_name",
     "lower",
     "measured_tilt_rad",
     "measured_tilt_raw",
@@ -47,9 +65,28 @@ __all__ = [
     "parameters",
     "run_float",
     "run_integer",
+    "setting_words",
     "settings",
     "step_integer",
     "tau_from_eta",
     "told_by_device",
     "with_told",
+    "with_told_by_name",
 ]
+
+COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
+    name="complementary",
+    title="complementary filter",
+    lower=lower,
+    run_float=run_float,
+    run_integer=run_integer,
+    step_integer=step_integer,
+    run_time=RunTime(
+        known=known_parameters(),
+        parameters=device_parameters,
+        with_told=with_told_by_name,
+    ),
+    facts=facts,
+    context=filter_context,
+    setting_words=setting_words,
+)

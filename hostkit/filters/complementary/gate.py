@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.spec import ForceGate
+from hostkit.filters.complementary.spec import ForceGate
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.filters.complementary.gate import corrects_integer
+from hostkit.filters.complementary.spec import BiasIntegral, ComplementarySpec
 from hostkit.filters.complementary.tilt import RATE_AXIS, body_counts, measured_tilt_raw
 from hostkit.fixedpoint import shift_round, wrap32
-from hostkit.spec import BiasIntegral, FixedPointSpec
 
 IntArray = NDArray[np.int64]
 
@@ -14,7 +14,7 @@ HALF_TURN, MASK = 2**31, 2**32 - 1
 
 
 def step_integer(
-    spec: FixedPointSpec, state_raw: IntArray, accel_count: IntArray, gyro_count: IntArray
+    spec: ComplementarySpec, state_raw: IntArray, accel_count: IntArray, gyro_count: IntArray
 ) -> IntArray:
     """Take one step from each of N states, independently of each other.
 
@@ -44,40 +44,62 @@ def step_integer(
     return np.hstack(after)
 
 
-def run_integer(spec: FixedPointSpec, accel_count: IntArray, gyro_count: IntArray) -> IntArray:
-    """Run the integer model from its first sample, which loads the measured tilt.
+def run_integer(
+    spec: ComplementarySpec,
+    accel_count: IntArray,
+    gyro_count: IntArray,
+    start: IntArray | None = None,
+) -> IntArray:
+    """Run the integer model.
 
     Parameters
     ----------
     accel_count, gyro_count
         Counts in sensor axes, each of shape ``(N, 3)``.
+    start
+        State before the first sample, shape ``(S,)``; without it the first sample loads the
+        measured tilt.
 
     Returns
     -------
     numpy.ndarray
         States, shape ``(N, S)``: the A angles in half turns, and with an integral the A biases.
     """
+    if start is not None and len(accel_count):
+        first = step_integer(spec, start[np.newaxis], accel_count[:1], gyro_count[:1])
+        return _run(spec, accel_count, gyro_count, first[0])
+    return _run(spec, accel_count, gyro_count, None)
+
+
+def _run(
+    spec: ComplementarySpec, accel_count: IntArray, gyro_count: IntArray, first: IntArray | None
+) -> IntArray:
+    """Run from the state after the first sample, or from its measured tilt."""
     tilt, step = _tilts(spec, accel_count), _rate_steps(spec, gyro_count)
     corrects = corrects_integer(spec.gate, accel_count)
     if spec.integral is None:
         step -= spec.gyro_bias_raw
     angles, biases = [], []
-    for i in range(len(spec.axes)):
+    axes = len(spec.axes)
+    if first is not None:
+        tilt[0] = first[:axes]
+    for i in range(axes):
         samples = step[:, i].tolist(), tilt[:, i].tolist(), corrects.tolist()
         if spec.integral is None:
             angles.append(_run_axis(spec, *samples))
         else:
-            run = _run_axis_and_learn(spec, spec.integral, spec.gyro_bias_raw[i], *samples)
+            bias = spec.gyro_bias_raw[i] if first is None else int(first[axes + i])
+            run = _run_axis_and_learn(spec, spec.integral, bias, *samples)
             angles.append(run[0])
             biases.append(run[1])
     return np.array([*angles, *biases], dtype=np.int64).T
 
 
-def _tilts(spec: FixedPointSpec, accel_count: IntArray) -> IntArray:
+def _tilts(spec: ComplementarySpec, accel_count: IntArray) -> IntArray:
     return wrap32(measured_tilt_raw(spec, accel_count) - np.array(spec.tilt_offset_raw))
 
 
-def _rate_steps(spec: FixedPointSpec, gyro_count: IntArray) -> IntArray:
+def _rate_steps(spec: ComplementarySpec, gyro_count: IntArray) -> IntArray:
     rate = body_counts(spec, gyro_count)
     steps = [
         shift_round(rate[:, RATE_AXIS[axis]] * gain.raw, gain.format.fraction_bits)
@@ -86,14 +108,14 @@ def _rate_steps(spec: FixedPointSpec, gyro_count: IntArray) -> IntArray:
     return np.stack(steps, axis=-1)
 
 
-def _bias_steps(spec: FixedPointSpec, bias_raw: IntArray) -> IntArray:
+def _bias_steps(spec: ComplementarySpec, bias_raw: IntArray) -> IntArray:
     if spec.integral is None:
         return np.array(spec.gyro_bias_raw)
     return shift_round(bias_raw, spec.integral.fraction_bits)
 
 
 def _run_axis(
-    spec: FixedPointSpec, steps: list[int], tilts: list[int], corrects: list[int]
+    spec: ComplementarySpec, steps: list[int], tilts: list[int], corrects: list[int]
 ) -> list[int]:
     """Step through one axis; the wraps of :func:`wrap32` are written out, for speed."""
     blend, bits = spec.blend.raw, spec.blend.format.fraction_bits
@@ -110,7 +132,7 @@ def _run_axis(
 
 
 def _run_axis_and_learn(
-    spec: FixedPointSpec,
+    spec: ComplementarySpec,
     integral: BiasIntegral,
     bias: int,
     steps: list[int],

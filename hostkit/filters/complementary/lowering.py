@@ -13,10 +13,11 @@ from hostkit.filters.complementary.bounds import (
 )
 from hostkit.filters.complementary.gate import force_gate
 from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S, Settings, settings
+from hostkit.filters.complementary.spec import BiasIntegral, ComplementarySpec
 from hostkit.fixedpoint import Coefficient, coefficient, round_half_up
 from hostkit.records import AXES, FilterDesign
 from hostkit.sensors import SENSORS
-from hostkit.spec import BiasIntegral, FixedPointSpec, StateWord
+from hostkit.spec import StateWord
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 LEAST_FORCE_G = 0.125
@@ -26,7 +27,7 @@ RAW_LIMIT = 2**31
 """First number that a word of the state cannot hold."""
 
 
-def lower(design: FilterDesign) -> FixedPointSpec:
+def lower(design: FilterDesign) -> ComplementarySpec:
     """Turn a design into integers.
 
     The bound of the difference to the float model holds while every sample has LEAST_FORCE_G or
@@ -50,7 +51,7 @@ def lower(design: FilterDesign) -> FixedPointSpec:
     fraction_bits = 0 if integral is None else integral.fraction_bits
     bias = tuple(math.ldexp(value, fraction_bits) for value in _bias_units(design, own))
     errors = _sample_errors(design, own, gains, gravity)
-    return FixedPointSpec(
+    return ComplementarySpec(
         filter=design.filter,
         axes=AXES[design.axes],
         tilt=design.tilt,

@@ -5,6 +5,7 @@ them. What it tells of an integer is the nearest such number, kept within the li
 it gives the same integer wherever the integer came from a number of 32 bits.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -19,8 +20,9 @@ from hostkit.filters.complementary.parameters import (
     parameter,
     settings,
 )
+from hostkit.filters.complementary.spec import ComplementarySpec
+from hostkit.filters.filter import DeviceParameter, KnownParameter
 from hostkit.records import AXES, Axis, FilterDesign, Parameter
-from hostkit.spec import FixedPointSpec
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 LEAST_TAU_SAMPLES = 2.0**-20
@@ -109,14 +111,14 @@ def with_told(design: FilterDesign, values: tuple[float, ...]) -> FilterDesign:
     return changed_design
 
 
-def _told(item: RunTimeParameter, design: FilterDesign, spec: FixedPointSpec) -> float:
+def _told(item: RunTimeParameter, design: FilterDesign, spec: ComplementarySpec) -> float:
     if not item.of(design):
         return 0.0
     lowest, highest = limits(item, design.period_s)
     return min(max(float(np.float32(_in_use(item, design, spec))), lowest), highest)
 
 
-def _in_use(item: RunTimeParameter, design: FilterDesign, spec: FixedPointSpec) -> float:
+def _in_use(item: RunTimeParameter, design: FilterDesign, spec: ComplementarySpec) -> float:
     """Return the value of the integer in the spec."""
     if item.axis is None:
         blend = spec.blend.quantised
@@ -139,3 +141,61 @@ def _towards_zero(value: float) -> float:
     near = np.float32(value)
     inside = near if abs(float(near)) <= abs(value) else np.nextafter(near, np.float32(0.0))
     return float(inside)
+
+
+def link_name(item: RunTimeParameter) -> str:
+    """Return the name that a parameter has on the link."""
+    short = {"tau": "FILT_TAU", "gyro_bias": "GYRO_BIAS", "tilt_offset": "TILT_OFS"}[item.kind]
+    return short if item.axis is None else f"{short}_{item.axis.upper()}"
+
+
+def known_parameters() -> tuple[KnownParameter, ...]:
+    """Return what is known of the parameters without a design."""
+    return tuple(
+        KnownParameter(
+            name=link_name(item),
+            unit=item.unit,
+            lowest=None if item.kind == "tau" else limits(item, 1.0)[0],
+            highest=None if item.kind == "tau" else limits(item, 1.0)[1],
+        )
+        for item in RUN_TIME
+    )
+
+
+def device_parameters(design: FilterDesign) -> tuple[DeviceParameter, ...]:
+    """Return the parameters that a device of a design has.
+
+    Raises
+    ------
+    HostkitError
+        If the design cannot be lowered.
+    """
+    found = []
+    for item, value in zip(RUN_TIME, told_by_device(design), strict=True):
+        if item.of(design):
+            lowest, highest = limits(item, design.period_s)
+            found.append(
+                DeviceParameter(
+                    name=link_name(item),
+                    unit=item.unit,
+                    design_value=value,
+                    lowest=lowest,
+                    highest=highest,
+                )
+            )
+    return tuple(found)
+
+
+def with_told_by_name(design: FilterDesign, values: Mapping[str, float]) -> FilterDesign:
+    """Return the design that a device runs which tells these values, by their names on the link.
+
+    Raises
+    ------
+    DesignError
+        If a value is outside the limits of a design.
+    """
+    own = told_by_device(design)
+    return with_told(
+        design,
+        tuple(values.get(link_name(i), mine) for i, mine in zip(RUN_TIME, own, strict=True)),
+    )

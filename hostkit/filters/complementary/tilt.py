@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import pitch_from_up, roll_from_up
 from hostkit.filters.arctan import arcsin_count, atan2_count, atan2_length
+from hostkit.filters.complementary.spec import ComplementarySpec
 from hostkit.records import Axis, TiltMethod
-from hostkit.spec import FixedPointSpec
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -37,7 +37,7 @@ def measured_tilt_rad(axis: Axis, method: TiltMethod, force_g: Vector) -> Vector
     return np.arcsin(np.clip(component, -1.0, 1.0))
 
 
-def measured_tilt_raw(spec: FixedPointSpec, accel_count: IntArray) -> IntArray:
+def measured_tilt_raw(spec: ComplementarySpec, accel_count: IntArray) -> IntArray:
     """Return the tilt from specific force in integers.
 
     Parameters
@@ -62,6 +62,6 @@ def measured_tilt_raw(spec: FixedPointSpec, accel_count: IntArray) -> IntArray:
     return np.stack([angles[axis] for axis in spec.axes], axis=-1)
 
 
-def body_counts(spec: FixedPointSpec, count: IntArray) -> IntArray:
+def body_counts(spec: ComplementarySpec, count: IntArray) -> IntArray:
     """Express counts in sensor axes, shape ``(N, 3)``, in body axes."""
     return count[:, list(spec.mounting.source)] * np.asarray(spec.mounting.sign, dtype=np.int64)

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass, replace
 
+from hostkit.filters.complementary.float_context import FloatContext, float_context
+from hostkit.filters.complementary.run_time_context import RunTimeContext, run_time_context
+from hostkit.filters.complementary.spec import BiasIntegral, ComplementarySpec, ForceGate
 from hostkit.fixedpoint import Coefficient, QFormat
-from hostkit.records import AXES, Axis
-from hostkit.render.literals import float32_text
-from hostkit.spec import BiasIntegral, FixedPointSpec, ForceGate
+from hostkit.literals import float32_text
+from hostkit.records import AXES, Axis, FilterDesign
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 NO_GATE = ForceGate(lowest=0, highest=0)
@@ -55,6 +57,12 @@ class FilterContext:
         Those of the bias: 0 where it is constant.
     coefficients, all_coefficients
         Those of the design, and with those of what it lacks.
+    uses_arcsin
+        Whether a tilt is the arc sine of one component.
+    real
+        The filter in floats.
+    run_time
+        What can be changed while it runs.
     """
 
     axes: tuple[AxisContext, ...]
@@ -65,11 +73,14 @@ class FilterContext:
     gate: ForceGate
     has_integral: bool
     integral: BiasIntegral
+    uses_arcsin: bool
+    real: FloatContext
+    run_time: RunTimeContext
 
 
-def filter_context(spec: FixedPointSpec, rate_hz: float) -> FilterContext:
+def filter_context(design: FilterDesign, spec: ComplementarySpec) -> FilterContext:
     """Lay out what templates need of the filter."""
-    axes = tuple(_axis(spec, name, rate_hz) for name in AXES["both"])
+    axes = tuple(_axis(spec, name, design.rate_hz) for name in AXES["both"])
     integral = spec.integral or NO_INTEGRAL
     own = () if spec.integral is None else (integral.gain,)
     return FilterContext(
@@ -81,6 +92,9 @@ def filter_context(spec: FixedPointSpec, rate_hz: float) -> FilterContext:
         gate=spec.gate or NO_GATE,
         has_integral=spec.integral is not None,
         integral=integral,
+        uses_arcsin=spec.tilt == "arcsin",
+        real=float_context(design, spec),
+        run_time=run_time_context(design, spec),
     )
 
 
@@ -88,7 +102,7 @@ def _rad_s(gain: Coefficient, rate_hz: float) -> str:
     return float32_text(gain.quantised * RAD_PER_HALF_TURN_LSB * rate_hz)
 
 
-def _axis(spec: FixedPointSpec, name: Axis, rate_hz: float) -> AxisContext:
+def _axis(spec: ComplementarySpec, name: Axis, rate_hz: float) -> AxisContext:
     rate_axis = {"roll": "x", "pitch": "y"}[name]
     if name not in spec.axes:
         gain = replace(spec.rate_gains[0], name=f"rate_gain_{name}")

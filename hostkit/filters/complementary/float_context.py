@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from hostkit.filters.complementary import BIAS_LIMIT_RAD_S, settings, tau_from_eta
 from hostkit.filters.complementary.lowering import bias_unit_rad_s
+from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S, settings, tau_from_eta
+from hostkit.filters.complementary.spec import ComplementarySpec
+from hostkit.literals import float32_text
 from hostkit.records import AXES, FilterDesign
-from hostkit.render.literals import float32_text
 from hostkit.sensors import SENSORS
-from hostkit.spec import FixedPointSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +56,7 @@ class FloatContext:
     gravity_count: str
 
 
-def float_context(design: FilterDesign, spec: FixedPointSpec) -> FloatContext:
+def float_context(design: FilterDesign, spec: ComplementarySpec) -> FloatContext:
     """Lay out what the float templates need."""
     own = settings(design)
     gain = own.integral_gain_per_s2 or 0.0

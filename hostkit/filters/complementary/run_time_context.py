@@ -1,25 +1,14 @@
 """What templates see of the parameters that a device can change while it runs."""
 
-import math
 from dataclasses import dataclass
 
-from hostkit.filters.complementary import RUN_TIME, limits
 from hostkit.filters.complementary.lowering import bias_unit_rad_s
+from hostkit.filters.complementary.run_time import RUN_TIME, limits
+from hostkit.filters.complementary.spec import ComplementarySpec
+from hostkit.filters.factor import FactorContext, factor
+from hostkit.literals import float32_text
 from hostkit.records import FilterDesign
-from hostkit.render.literals import float32_text
-from hostkit.spec import FixedPointSpec
 from hostkit.units import RAD_PER_HALF_TURN_LSB
-
-MANTISSA_BITS = 53
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FactorContext:
-    """A positive factor: the integer of 63 bits in two words, times ``2**(exponent - 64)``."""
-
-    high: int
-    low: int
-    exponent: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +47,7 @@ class RunTimeContext:
     offset_rad: FactorContext
 
 
-def run_time_context(design: FilterDesign, spec: FixedPointSpec) -> RunTimeContext:
+def run_time_context(design: FilterDesign, spec: ComplementarySpec) -> RunTimeContext:
     """Lay out what the code needs to change parameters."""
     tau, bias, offset = (_range(kind, design) for kind in ("tau", "gyro_bias", "tilt_offset"))
     unit = bias_unit_rad_s(design, spec.integral)
@@ -72,13 +61,6 @@ def run_time_context(design: FilterDesign, spec: FixedPointSpec) -> RunTimeConte
         offset_raw=factor(1.0 / RAD_PER_HALF_TURN_LSB),
         offset_rad=factor(RAD_PER_HALF_TURN_LSB),
     )
-
-
-def factor(real: float) -> FactorContext:
-    """Split a positive number into the words of a factor, exactly."""
-    mantissa, exponent = math.frexp(real)
-    whole = int(math.ldexp(mantissa, MANTISSA_BITS)) << 63 - MANTISSA_BITS
-    return FactorContext(high=whole >> 32, low=whole & 0xFFFFFFFF, exponent=exponent + 1)
 
 
 def _range(kind: str, design: FilterDesign) -> RangeOfValues:
