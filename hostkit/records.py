@@ -231,6 +231,19 @@ class AngleTrace:
     def __len__(self) -> int:
         return len(self.sequence)
 
+    def part(self, which: slice | NDArray[np.bool_]) -> "AngleTrace":
+        """Return some of the samples, with all that was told beside them."""
+        return AngleTrace(
+            sequence=self.sequence[which],
+            time_us=self.time_us[which],
+            accel_count=self.accel_count[which],
+            gyro_count=self.gyro_count[which],
+            state_raw=self.state_raw[which],
+            restarted=self.restarted[which],
+            retuned=None if self.retuned is None else self.retuned[which],
+            told=self.told,
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResidualStatistics:

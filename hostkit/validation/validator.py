@@ -18,6 +18,7 @@ from hostkit.validation.residual import ResidualTracker
 from hostkit.validation.retuning import Model, Retuning, runs
 from hostkit.validation.state_follower import StateFollower
 from hostkit.validation.thresholds import Thresholds
+from hostkit.validation.waiting import Waiting
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -73,7 +74,8 @@ class Validator:
         follower = StateFollower if self.spec.tells_state else Follower
         self._follower = follower(design, self._retuning.designed, tolerance_rad)
         self._order = SampleOrder()
-        self._elapsed = self._wait = 0
+        self._waiting = Waiting()
+        self._elapsed = 0
         self._is_retuned = False
         self.restart()
 
@@ -81,7 +83,7 @@ class Validator:
         """Forget the figures so far; the models go on."""
         self._order.forget_figures()
         self.samples = self.checked = self.mismatches = self._unjudged = 0
-        self._waiting = self._longest_wait = 0
+        self._waiting.forget_figures()
         self._was_retuned = self._is_retuned
         self._retuning.drop_withheld()
         self._trackers = tuple(ResidualTracker(axis, self._period_s) for axis in self._axes)
@@ -132,7 +134,7 @@ class Validator:
         retuned = np.zeros_like(follows) if trace.retuned is None else trace.retuned
         for run in runs(retuned.tolist()):
             used = self._model(is_retuned=bool(retuned[run.start]))
-            steps = self._judge(used, _part(trace, run), follows[run])
+            steps = self._judge(used, trace.part(run), follows[run])
             if steps is not None:
                 model[run], wrong[run] = steps.exact, steps.wrong
         residual = wrap_rad(device - model)
@@ -163,7 +165,7 @@ class Validator:
         follows = np.array([name == "follows" for name in names], dtype=np.bool_)
         step = np.array([step for _, step in found], dtype=np.int64)
         if not kept.all():
-            trace, step, follows = _part(trace, kept), step[kept], follows[kept]
+            trace, step, follows = trace.part(kept), step[kept], follows[kept]
         self._hear(trace, anew=anew)
         return trace, step, follows
 
@@ -194,7 +196,7 @@ class Validator:
         self._count_withheld()
         wrong, checked = int(steps.wrong.sum()), int(steps.judged.sum())
         if self._follower.waits:
-            self._count_waiting(steps.judged)
+            self._unjudged += self._waiting.add(steps.judged)
         if wrong and self._is_retuned and self._retuning.doubted:
             first = int(steps.wrong.argmax())
             later = int(steps.judged[first:].sum())
@@ -208,14 +210,6 @@ class Validator:
         self.mismatches += wrong
         self.checked += checked
         return steps
-
-    def _count_waiting(self, judged: BoolArray) -> None:
-        """Count samples that came before the state was told."""
-        self._waiting += int((~judged).sum())
-        self._unjudged += int((~judged).sum())
-        for known in judged.tolist():
-            self._wait = 0 if known else self._wait + 1
-            self._longest_wait = max(self._longest_wait, self._wait)
 
     def _count_withheld(self) -> None:
         """Count wrong steps that were withheld, now that the device has told the same again."""
@@ -282,24 +276,11 @@ class Validator:
             late=self._order.late,
             repeated=self._order.repeated,
             unjudged=min(self.samples, self._unjudged + self._order.thinned),
-            waiting=min(self.samples, self._waiting),
-            longest_wait_s=self._longest_wait * self._period_s,
+            waiting=min(self.samples, self._waiting.samples),
+            longest_wait_s=self._waiting.longest * self._period_s,
             stride=self._order.widest_stride,
             tolerance_rad=self._tolerance_rad,
             untold=self.untold,
             residual=tuple(entry for entry in residual if entry is not None),
             retuned=self._retuning.differences() if self._was_retuned else (),
         )
-
-
-def _part(trace: AngleTrace, which: slice | BoolArray) -> AngleTrace:
-    return AngleTrace(
-        sequence=trace.sequence[which],
-        time_us=trace.time_us[which],
-        accel_count=trace.accel_count[which],
-        gyro_count=trace.gyro_count[which],
-        state_raw=trace.state_raw[which],
-        restarted=trace.restarted[which],
-        retuned=None if trace.retuned is None else trace.retuned[which],
-        told=trace.told,
-    )
