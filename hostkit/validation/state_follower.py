@@ -84,7 +84,7 @@ class StateFollower:
         Parameters
         ----------
         anew
-            Whether the sample counter began anew with one of them.
+            Whether the sample counter began anew with the first of them.
 
         Returns
         -------
