@@ -47,6 +47,7 @@ class Conversation:
     ) -> None:
         self._transport, self._encoder, self._clock = transport, encoder, clock
         self._notices, self._silent = notices, silent
+        self._period_s = design.period_s
         self._facts: Mapping[str, ParameterFacts] = parameter_facts(design)
         self._parameters = ParameterClient(self.send, clock, facts=self._facts)
         self._commands = CommandClient(self.send, clock)
@@ -158,6 +159,9 @@ class Conversation:
             highest=None if facts is None else facts.highest,
             wanted=entry.wanted,
             error=entry.error,
+            symbol="" if facts is None else facts.symbol,
+            title="" if facts is None else facts.title,
+            views=() if facts is None else facts.views(self._period_s),
         )
 
     def _follow_command(self) -> None:
