@@ -1,6 +1,5 @@
 """A filter whose state is longer than a sample's message and hardly seen in its angles."""
 
-import math
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +19,7 @@ from hostkit.spec import FixedPointSpec, StateWord
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 NAME = "slow"
+STATE_ID = 52051
 WORDS = ("rate_sum", "count", "yaw_sum", "force_sum", "mixed", "last")
 PLACE = {"SLOW_GAIN": "gain", "SLOW_BIAS": "bias"}
 
@@ -182,7 +182,4 @@ class SlowDevice(Device):
 
 
 def is_state(frame: bytes) -> bool:
-    return frame[7:10] == (52051).to_bytes(3, "little")
-
-
-RESIDUAL_LIMIT_RAD = math.radians(0.005)
+    return frame[7:10] == STATE_ID.to_bytes(3, "little")

@@ -119,6 +119,11 @@ class Validator:
         """Parameters that the device uses and has not told; empty while it runs its design."""
         return self._retuning.untold if self._is_retuned else ()
 
+    @property
+    def needs_state(self) -> bool:
+        """Whether samples wait for the device to tell the state of its filter."""
+        return self.samples > 0 and self._follower.needs_state
+
     def add(self, trace: AngleTrace) -> Judged:
         """Take further samples.
 
