@@ -41,9 +41,14 @@ class Shown:
     def views(self, name: str) -> tuple[ParameterView, ...]:
         """Return what says the same as a parameter; nothing where no rate is known."""
         fact = self.facts.get(name)
-        if fact is None or not self.rate_hz:
-            return ()
-        return fact.views(1.0 / self.rate_hz)
+        return fact.views(1.0 / self.rate_hz) if fact is not None and self.rate_hz else ()
+
+    def viewed_by_name(self, name: str, value: float) -> dict[str, float | None]:
+        """Return what says the same as a value by its key; null where no rate is known."""
+        fact = self.facts.get(name)
+        names = () if fact is None else tuple(view.name for view in fact.views(1.0))
+        found = {view.name: view.of(value) for view in self.views(name)}
+        return {key: found.get(key) for key in names}
 
     def viewed(self, name: str, value: float, *, about: str = "") -> str:
         """Return the first view of a value in words; empty where there is none."""
@@ -83,7 +88,7 @@ class Shown:
             "lowest": None if fact is None else fact.lowest,
             "highest": None if fact is None else fact.highest,
             "design_value": None if fact is None else fact.design_value,
-            **{view.name: view.of(entry.value) for view in self.views(entry.name)},
+            **self.viewed_by_name(entry.name, entry.value),
         }
 
 

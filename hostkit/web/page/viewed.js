@@ -3,7 +3,7 @@
 
 import { post } from "./api.js";
 import { attempt, byId, text } from "./dom.js";
-import { figure, withUnit } from "./format.js";
+import { figure } from "./format.js";
 import { differs, hasViews, outcome } from "./parameters.js";
 
 const LOWEST = 0.01;
@@ -16,7 +16,7 @@ function viewOf({ terms: [a, b, c, d] }, value) { return (a * value + b) / (c * 
 function valueOf({ terms: [a, b, c, d] }, shown) { return (d * shown - b) / (a - c * shown); }
 
 function said(symbol, number, digits, unit) {
-  return `${symbol} ${withUnit(figure(number, digits), unit)}`.trim();
+  return `${symbol} ${figure(number, digits)} ${unit}`.trim();
 }
 
 export class Viewed {
@@ -51,7 +51,7 @@ export class Viewed {
     if (source !== this.value) this.value.value = Number(value.toPrecision(5));
     if (source !== this.other) this.other.value = Number(viewOf(views[0], value).toPrecision(6));
     if (source !== this.slide) this.slide.value = Math.log10(value);
-    this.slide.setAttribute("aria-valuetext", withUnit(figure(value, 3), unit));
+    this.slide.setAttribute("aria-valuetext", said("", value, 3, unit));
   }
 
   async apply(event) {
@@ -85,7 +85,7 @@ export class Viewed {
       return said(view.symbol, viewOf(view, value), VIEW_DIGITS[Math.min(place, 1)], view.unit);
     });
     const design = differs({ value, ...parameter })
-      ? [`design ${withUnit(figure(parameter.design_value), unit)}`] : [];
+      ? [said("design", parameter.design_value, 4, unit)] : [];
     const used = byId("viewed-used");
     text(used, `in use ${[own, ...others, ...design].join(" · ")}`);
     used.classList.toggle("warn", design.length > 0);
