@@ -86,8 +86,8 @@ def test_states_of_other_senders_are_passed_over() -> None:
     frames = SlowDevice(slow_design()).run(SAMPLES)
     other = SlowDevice(slow_design())
     other.mav.srcSystem = 7
-    wrong = [other.state_frame(k, [0] * 8) for k in (50, 100, 2**31)]
-    report = session([*wrong, *frames[:70], *wrong, *frames[70:], *wrong]).report
+    wrong = [other.state_frame(k, [0] * 8) for k in (50, 50, 100, 2**31)]
+    report = session([wrong[0], *frames[:70], *wrong[1:], *frames[70:]]).report
     assert (report.verdict, report.mismatches) == ("pass", 0)
 
 

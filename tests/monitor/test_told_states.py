@@ -143,6 +143,26 @@ def test_a_restart_whose_first_sample_was_lost_is_no_mismatch(batch: int) -> Non
 
 
 @BATCHES
+def test_a_state_without_its_sample_before_a_restart_is_no_mismatch(batch: int) -> None:
+    old = SlowDevice(slow_design()).run(2951)
+    assert is_state(old[-1])
+    frames = [*old[:-2], old[-1], *SlowDevice(slow_design(), seed=2).run(200)]
+    report = verdict(frames, batch=batch)
+    assert (report.verdict, report.mismatches) == ("pass", 0)
+
+
+@BATCHES
+def test_a_late_state_from_before_a_gap_is_passed_over(batch: int) -> None:
+    """Nothing can be computed across the sample that is missing."""
+    frames = without_sample(SlowDevice(slow_design()).run(SAMPLES), 130, 152)
+    place = next(i for i, frame in enumerate(frames) if number(frame) == 150) + 1
+    assert is_state(frames[place])
+    moved = [*frames[:place], *frames[place + 1 : place + 4], frames[place], *frames[place + 4 :]]
+    report = verdict(moved, batch=batch)
+    assert (report.verdict, report.mismatches) == ("pass", 0)
+
+
+@BATCHES
 def test_states_of_no_sample_are_mismatches(batch: int) -> None:
     device = SlowDevice(slow_design())
     wrong = [device.state_frame(k, [1, 2, 3, 4, 5, 6, 7, 8]) for k in (2**31, 70_000, 2**32 - 5000)]
