@@ -1,5 +1,6 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.calibration import calibrated
 from hostkit.filters.complementary.context import filter_context
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
@@ -50,6 +51,7 @@ __all__ = [
     "ParameterKind",
     "RunTimeParameter",
     "Settings",
+    "calibrated",
     "crossover_hz",
     "device_parameters",
     "eta_from_tau",
@@ -92,4 +94,5 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    calibrated=calibrated,
 )
