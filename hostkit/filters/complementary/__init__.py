@@ -1,5 +1,6 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.context import filter_context
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
@@ -89,4 +90,5 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     facts=facts,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
 )
