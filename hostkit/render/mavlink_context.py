@@ -4,13 +4,15 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from hostkit.dialect import python_module, sample_bytes
+from hostkit.dialect import python_module, sample_bytes, state_bytes
 from hostkit.errors import RenderError
-from hostkit.records import Axis
 from hostkit.render.options import Identity
 
-MOST_PAYLOAD_BYTES = 51
-"""`hk_mavlink_tx` numbers the bytes of a frame with 6 bits, and 13 are not of the payload."""
+OTHER_PLACES = 13
+"""Bytes of a frame that `hk_mavlink_tx` numbers beside its payload."""
+PLACE_BITS = (6, 7)
+"""Bits of such a number, where they are enough and at most."""
+MOST_PAYLOAD_BYTES = 2 ** PLACE_BITS[-1] - OTHER_PLACES
 MAVLINK_VERSION = 3
 """The protocol's own number, in every HEARTBEAT of version 2."""
 FLAGS = ("RESTARTED", "SATURATED", "RETUNED")
@@ -78,12 +80,10 @@ class MavlinkContext:
         First byte of a frame; the protocol's number in a heartbeat.
     system_id, component_id, vehicle_type, autopilot
         Who the device says it is.
-    sample, heartbeat
-        The messages.
-    hides_bias_roll, hides_bias_pitch
-        Whether that bias is hidden state.
-    bias_roll_word, bias_pitch_word
-        Which word of it; 0 if it is none.
+    messages
+        Those that are sent.
+    place_bits
+        Bits of a number for each byte of the longest frame.
     flags
         Of a sample.
     """
@@ -94,24 +94,22 @@ class MavlinkContext:
     component_id: int
     vehicle_type: int
     autopilot: int
-    sample: MessageContext
-    heartbeat: MessageContext
-    hides_bias_roll: bool
-    hides_bias_pitch: bool
-    bias_roll_word: int
-    bias_pitch_word: int
+    messages: tuple[MessageContext, ...]
+    place_bits: int
     flags: tuple[FlagContext, ...]
 
 
 def mavlink_context(
-    identity: Identity, system_id: int, hidden_axes: tuple[Axis, ...]
+    identity: Identity, system_id: int, *, hidden_words: int, state_words: int = 0
 ) -> MavlinkContext:
     """Lay out the messages of the dialect that the installed pymavlink makes.
 
     Parameters
     ----------
-    hidden_axes
-        Axes whose bias is hidden state, in the order of the design.
+    hidden_words
+        Words of the filter's state that ``TILT_SAMPLE`` tells.
+    state_words
+        Those that ``TILT_STATE`` tells; 0 where it is not sent.
 
     Raises
     ------
@@ -119,6 +117,13 @@ def mavlink_context(
         If mavgen makes nothing, or a payload is longer than the core can send.
     """
     module: Any = python_module()
+    messages = [
+        _message("TILT_SAMPLE", "sample", sample_bytes(hidden_words)),
+        _message("HEARTBEAT", "heartbeat", None),
+    ]
+    if state_words:
+        messages.append(_message("TILT_STATE", "state", state_bytes(state_words)))
+    longest = max(message.payload_bytes for message in messages)
     return MavlinkContext(
         magic=module.PROTOCOL_MARKER_V2,
         mavlink_version=MAVLINK_VERSION,
@@ -126,18 +131,10 @@ def mavlink_context(
         component_id=identity.component_id,
         vehicle_type=identity.vehicle_type,
         autopilot=identity.autopilot,
-        sample=_message("TILT_SAMPLE", "sample", sample_bytes(len(hidden_axes))),
-        heartbeat=_message("HEARTBEAT", "heartbeat", None),
-        hides_bias_roll="roll" in hidden_axes,
-        hides_bias_pitch="pitch" in hidden_axes,
-        bias_roll_word=_word("roll", hidden_axes),
-        bias_pitch_word=_word("pitch", hidden_axes),
+        messages=tuple(messages),
+        place_bits=next(bits for bits in PLACE_BITS if longest <= 2**bits - OTHER_PLACES),
         flags=tuple(_flag(module, name) for name in FLAGS),
     )
-
-
-def _word(axis: Axis, hidden_axes: tuple[Axis, ...]) -> int:
-    return hidden_axes.index(axis) if axis in hidden_axes else 0
 
 
 def _flag(module: Any, name: str) -> FlagContext:

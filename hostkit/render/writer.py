@@ -10,6 +10,7 @@ from hostkit.files import write_aside
 from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.choices import Options, default_options
 from hostkit.render.context import render_context
+from hostkit.render.core_context import core_folders
 from hostkit.render.environment import environment, template_root
 from hostkit.render.fpga_report import CellCounts
 from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
@@ -43,7 +44,8 @@ def render_target(
         If the design or the options do not fit the target.
     """
     context = render_context(design, target, options, cells=cells)
-    folders = (*target.folders, _filter_folder(design, context.options))
+    core = core_folders(design.filter) if target.kind == "fpga" else ()
+    folders = (*target.folders, *core, _filter_folder(design, context.options))
     return _sorted_unique(render_folders(context, folders))
 
 
