@@ -1,8 +1,8 @@
 """The MAVLink dialect of hostkit, made by the installed pymavlink for C and for Python.
 
 The standard messages are taken out of the definitions that pymavlink ships; only ``TILT_SAMPLE``
-and ``TILT_STATE`` are written here. Nothing that mavgen makes is committed: headers are made when code is generated,
-the Python module when it is first needed.
+and ``TILT_STATE`` are written here. Nothing that mavgen makes is committed: headers are made when
+code is generated, the Python module when it is first needed.
 """
 
 import contextlib

@@ -44,14 +44,18 @@ def render_target(
         If the design or the options do not fit the target.
     """
     context = render_context(design, target, options, cells=cells)
-    core = core_folders(design.filter) if target.kind == "fpga" else ()
-    folders = (*target.folders, *core, _filter_folder(design, context.options))
+    folders = (*target.folders, *_filter_folders(design, target, context.options))
     return _sorted_unique(render_folders(context, folders))
 
 
-def _filter_folder(design: FilterDesign, options: FirmwareOptions) -> str:
-    """Return the folder of the filter in the arithmetic that was asked for."""
-    return f"{design.filter}_float" if options.arithmetic == "float" else design.filter
+def _filter_folders(
+    design: FilterDesign, target: Target, options: FirmwareOptions
+) -> tuple[str, ...]:
+    """Return the folder of the filter, and those of what it shares with other filters."""
+    if options.arithmetic == "float":
+        return (f"{design.filter}_float",)
+    shared = ("fixed",) if target.kind == "mcu" else core_folders(design.filter)
+    return (*shared, design.filter)
 
 
 def generate(

@@ -149,7 +149,7 @@ def test_options_of_another_core_are_refused(options: FpgaOptions, says: str) ->
 def test_a_filter_without_a_core_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     bare = replace(long_state.STAND_IN, core=None)
     monkeypatch.setitem(long_state.FILTERS._parts, long_state.NAME, bare)
-    with pytest.raises(RenderError, match="the stand-in has no VHDL core; .*: complementary"):
+    with pytest.raises(RenderError, match=r"the stand-in has no VHDL core; .*: complementary"):
         render_target(DESIGN, TARGET)
 
 
