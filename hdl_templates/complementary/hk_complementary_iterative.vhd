@@ -121,7 +121,7 @@ architecture rtl of hk_complementary_iterative is
   signal tilt         : signed(31 downto 0);
 
   signal arctan_multiply    : std_logic;
-  signal arctan_factor      : signed(22 downto 0);
+  signal arctan_factor      : signed(30 downto 0);
   signal arctan_coefficient : signed(17 downto 0);
 
   -- A stored channel: angles, with an integral the biases, and whether it has had a sample.
