@@ -19,7 +19,7 @@ end entity hk_memory;
 
 architecture rtl of hk_memory is
 
-  signal words_r : words_t := initial_words_c;
+  signal words_r : words_t := initial_words;
 
 begin
 

@@ -12,13 +12,14 @@ use ieee.numeric_std.all;
 
 package hk_sequence_pkg is
 
-  subtype word_t is natural range 0 to 255;
+  constant word_bits_c : positive := 8;
+  subtype word_t is natural range 0 to 2 ** word_bits_c - 1;
 
   constant first_whole_c : word_t := 128;  -- constants with 16 fraction bits
   constant one_c         : word_t := 160;  -- and those without a fraction
   constant first_input_c : word_t := 192;  -- as a only: ports of the core
   constant nowhere_c     : word_t := 128;  -- as the place of a result
-  constant angles_c      : word_t := 192;  -- the same: a component for the arc tangent
+  constant component_c   : word_t := 192;  -- the same: a component for the arc tangent
 
   type condition_t is (always, if_negative, if_not, test);  -- test: always, and note the sign
 
@@ -29,6 +30,7 @@ package hk_sequence_pkg is
     keep  : boolean;  -- what the accumulator holds
     minus : boolean;
     when_ : condition_t;
+    last  : boolean;  -- of its program
   end record;
   type program_t is array (natural range <>) of instruction_t;
 
@@ -41,6 +43,9 @@ package hk_sequence_pkg is
                  when_ : condition_t := always) return instruction_t;
   function less (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
                  when_ : condition_t := always) return instruction_t;
+
+  -- The program with its last instruction marked.
+  function ending (program : program_t) return program_t;
 
   -- Clocks that an instruction takes, and from its last one to one that reads its result. The
   -- sequencer waits where a result is not there yet.
@@ -77,7 +82,8 @@ package body hk_sequence_pkg is
                  when_ : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => false, minus => false, when_ => when_);
+    instruction_v := (a, b, into, keep => false, minus => false, when_ => when_,
+                      last => false);
     return instruction_v;
   end function take;
 
@@ -85,7 +91,8 @@ package body hk_sequence_pkg is
                    when_ : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => false, minus => true, when_ => when_);
+    instruction_v := (a, b, into, keep => false, minus => true, when_ => when_,
+                      last => false);
     return instruction_v;
   end function negate;
 
@@ -93,7 +100,8 @@ package body hk_sequence_pkg is
                  when_ : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => true, minus => false, when_ => when_);
+    instruction_v := (a, b, into, keep => true, minus => false, when_ => when_,
+                      last => false);
     return instruction_v;
   end function plus;
 
@@ -101,9 +109,18 @@ package body hk_sequence_pkg is
                  when_ : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => true, minus => true, when_ => when_);
+    instruction_v := (a, b, into, keep => true, minus => true, when_ => when_,
+                      last => false);
     return instruction_v;
   end function less;
+
+  function ending (program : program_t) return program_t is
+    variable program_v : program_t(0 to program'length - 1);
+  begin
+    program_v := program;
+    program_v(program_v'right).last := true;
+    return program_v;
+  end function ending;
 
   function clocks_of (instruction : instruction_t) return positive is
   begin
@@ -121,7 +138,7 @@ package body hk_sequence_pkg is
     return '0';
   end function bit_of;
 
-  function coded (instruction : instruction_t; waits : natural; last : boolean) return code_t is
+  function coded (instruction : instruction_t; waits : natural) return code_t is
     variable code_v : code_t;
   begin
     code_v(7 downto 0)   := std_logic_vector(to_unsigned(instruction.a, 8));
@@ -132,7 +149,7 @@ package body hk_sequence_pkg is
     code_v(28)           := bit_of(instruction.minus);
     code_v(30 downto 29) :=
       std_logic_vector(to_unsigned(condition_t'pos(instruction.when_), 2));
-    code_v(31)           := bit_of(last);
+    code_v(31)           := bit_of(instruction.last);
     return code_v;
   end function coded;
 
@@ -156,7 +173,7 @@ package body hk_sequence_pkg is
       if there_v(program(i).b) > begin_v then
         begin_v := there_v(program(i).b);
       end if;
-      codes_v(place_v) := coded(program(i), begin_v - free_v, i = program'right);
+      codes_v(place_v) := coded(program(i), begin_v - free_v);
       if program(i).into < nowhere_c then
         there_v(program(i).into) := begin_v + clocks_of(program(i)) - 1 + result_clocks_c;
       end if;

@@ -21,7 +21,7 @@ entity hk_sequencer is
     done        : out std_logic;  -- for one clock: the last result is there
     input_index : out unsigned(5 downto 0);
     input       : in  signed(31 downto 0);  -- the word of that index, at once
-    angles      : out std_logic;  -- for one clock: result is a component for the arc tangent
+    component   : out std_logic;  -- for one clock: result is one for the arc tangent
     result      : out signed(31 downto 0);
     state_index : in  unsigned(4 downto 0);  -- while no program runs
     state_word  : out signed(31 downto 0);   -- a clock later
@@ -41,7 +41,7 @@ architecture rtl of hk_sequencer is
   constant accumulate_c : positive := 5;
   constant write_c      : positive := 6;
 
-  constant codes_c : codes_t := assembled(program_c);
+  constant codes_c : codes_t := assembled(whole_program);
 
   -- What later steps need of an instruction.
   type step_t is record
@@ -257,9 +257,9 @@ begin
     end if;
   end process accumulate;
 
-  write  <= executed_r and not steps_r(write_c).into(7);
-  angles <= executed_r and steps_r(write_c).into(7) and steps_r(write_c).into(6);
-  result <= accumulator_r(31 downto 0);
-  done   <= uppers_r(write_c) and steps_r(write_c).last;
+  write     <= executed_r and not steps_r(write_c).into(7);
+  component <= executed_r and steps_r(write_c).into(7) and steps_r(write_c).into(6);
+  result    <= accumulator_r(31 downto 0);
+  done      <= uppers_r(write_c) and steps_r(write_c).last;
 
 end architecture rtl;
