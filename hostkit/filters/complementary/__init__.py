@@ -1,6 +1,7 @@
 """The complementary filter of one or two tilt axes."""
 
 from hostkit.filters.complementary.context import filter_context
+from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
 from hostkit.filters.complementary.gate import force_gate
@@ -19,6 +20,7 @@ from hostkit.filters.complementary.parameters import (
     settings,
     tau_from_eta,
 )
+from hostkit.filters.complementary.response import response
 from hostkit.filters.complementary.run_time import (
     RUN_TIME,
     RunTimeParameter,
@@ -63,6 +65,7 @@ __all__ = [
     "measured_tilt_raw",
     "parameter",
     "parameters",
+    "response",
     "run_float",
     "run_integer",
     "setting_words",
@@ -87,6 +90,8 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
         with_told=with_told_by_name,
     ),
     facts=facts,
+    response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
 )
