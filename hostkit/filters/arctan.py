@@ -35,6 +35,9 @@ ROOT_FRACTION_BITS = 8
 
 SLOPE_BITS = 17
 RATIO_LIMIT: float = 2.0**-TURN_DIGITS
+LEAST_WORD = 2**13
+"""A vector of two components below this is zero: of its ratio the digits would not be exact."""
+
 QUARTER, HALF = 2**30, 2**31
 
 IntArray = NDArray[np.int64]
@@ -115,8 +118,11 @@ def atan2_word(table: ArctanTable, y: IntArray, x: IntArray) -> tuple[IntArray, 
     Parameters
     ----------
     y, x
-        Components, from -2**30 to 2**30, shape ``(N,)``.
+        Components, from -2**30 to 2**30, shape ``(N,)``. Where both are below LEAST_WORD, the
+        vector counts as zero.
     """
+    nothing = np.maximum(np.abs(y), np.abs(x)) < LEAST_WORD
+    y, x = np.where(nothing, 0, y), np.where(nothing, 0, x)
     angle, length, stretch = vector_angle(table, np.abs(y), np.abs(x))
     angle = np.where(x < 0, HALF - angle, angle)
     return _with_sign_of(y, angle), length, stretch

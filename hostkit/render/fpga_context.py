@@ -20,6 +20,13 @@ LOWEST_CLOCK_HZ = 10_000_000
 CLOCKS_PER_BIT = 8
 """The receiver of the serial line takes eight samples a bit."""
 LOWEST_DEFAULT_BAUD = 115_200
+SENSOR_READ_S = 0.5e-3
+"""From the sample of the sensor to its counts, at 400 kHz."""
+STATE_FRAME_CLOCKS = 2200
+"""What a frame of a sample and one of a state take in `hk_mavlink_tx` beside their bits."""
+WAITING_SAMPLES = 2
+"""One sample waits in the sensor's core while another one's state is sent; a third is lost if its
+reading begins before the second is taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +135,8 @@ def state_frame_bytes(core: CoreContext) -> int:
 def _baud(chosen: int | None, clock_hz: int, rate_hz: float, core: CoreContext) -> int:
     """Return the chosen baud rate or the slowest standard one, if it carries the samples."""
     needed = math.ceil(rate_hz * sample_frame_bytes(core) + second_bytes(core))
+    if core.tells_state:
+        needed = max(needed, _bytes_s_of_a_state(clock_hz, rate_hz, core))
     fits = [rate for rate in STANDARD_BAUDS if _usable_bytes_s(rate) >= needed]
     baud = chosen or next((rate for rate in fits if rate >= LOWEST_DEFAULT_BAUD), 0)
     if _usable_bytes_s(baud) < needed:
@@ -141,6 +150,18 @@ def _baud(chosen: int | None, clock_hz: int, rate_hz: float, core: CoreContext) 
             f"{CLOCKS_PER_BIT} clocks a bit"
         )
     return baud
+
+
+def _bytes_s_of_a_state(clock_hz: int, rate_hz: float, core: CoreContext) -> int:
+    """Return what the usable line must carry so that no sample is lost while a state is sent."""
+    clocks = core.clocks.latency + STATE_FRAME_CLOCKS
+    left_s = WAITING_SAMPLES / rate_hz - SENSOR_READ_S - clocks / clock_hz
+    if left_s <= 0.0:
+        raise RenderError(
+            f"clock_hz = {clock_hz}; {rate_hz:g} samples a second leave no time for the state"
+        )
+    burst = sample_frame_bytes(core) + state_frame_bytes(core)
+    return math.ceil(burst / left_s * USABLE_PERCENT / 100)
 
 
 def _usable_bytes_s(baud: int) -> int:

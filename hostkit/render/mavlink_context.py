@@ -10,9 +10,9 @@ from hostkit.render.options import Identity
 
 OTHER_PLACES = 13
 """Bytes of a frame that `hk_mavlink_tx` numbers beside its payload."""
-PLACE_BITS = (6, 7)
-"""Bits of such a number, where they are enough and at most."""
-MOST_PAYLOAD_BYTES = 2 ** PLACE_BITS[-1] - OTHER_PLACES
+PLACE_BITS, PLACE_BITS_WITH_STATE = 6, 7
+"""Bits of such a number."""
+MOST_PAYLOAD_BYTES = 2**PLACE_BITS_WITH_STATE - OTHER_PLACES
 MAVLINK_VERSION = 3
 """The protocol's own number, in every HEARTBEAT of version 2."""
 FLAGS = ("RESTARTED", "SATURATED", "RETUNED")
@@ -83,7 +83,7 @@ class MavlinkContext:
     messages
         Those that are sent.
     place_bits
-        Bits of a number for each byte of the longest frame.
+        Bits of the number of a byte.
     flags
         Of a sample.
     """
@@ -123,7 +123,6 @@ def mavlink_context(
     ]
     if state_words:
         messages.append(_message("TILT_STATE", "state", state_bytes(state_words)))
-    longest = max(message.payload_bytes for message in messages)
     return MavlinkContext(
         magic=module.PROTOCOL_MARKER_V2,
         mavlink_version=MAVLINK_VERSION,
@@ -132,7 +131,7 @@ def mavlink_context(
         vehicle_type=identity.vehicle_type,
         autopilot=identity.autopilot,
         messages=tuple(messages),
-        place_bits=next(bits for bits in PLACE_BITS if longest <= 2**bits - OTHER_PLACES),
+        place_bits=PLACE_BITS_WITH_STATE if state_words else PLACE_BITS,
         flags=tuple(_flag(module, name) for name in FLAGS),
     )
 

@@ -19,6 +19,7 @@ from hostkit.link.frames.decoder import Decoder
 from hostkit.recordings import Recording
 from hostkit.records import FilterDesign
 from hostkit.render import FpgaOptions, render_target, write
+from hostkit.render.context import render_context
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.targets import TARGETS
 
@@ -68,7 +69,7 @@ def test_a_core_that_is_late_with_a_word_is_found(tmp_path: Path, ghdl_installed
     folder = built(DESIGN, tmp_path)
     source = folder / "hk_stand_in.vhd"
     text = source.read_text(encoding="ascii")
-    late = text.replace("    <= word_r;", "    <= word_r after 10 ns;")
+    late = text.replace("    <= word_r;", "    <= word_r after 11 ns;")
     assert late != text
     source.write_text(late, encoding="ascii")
     ghdl.analyse(folder)
@@ -111,18 +112,17 @@ def test_the_system_tells_the_state_once_a_second(tmp_path: Path, ghdl_installed
     folder = built(DESIGN, tmp_path)
     build_system(folder)
     recording = recorded(DESIGN)
-    result = emulate_system(folder, TARGET, DESIGN, recording, samples=60)
-    assert (result.samples, result.missing, result.mismatches) == (60, 0, 0)
-    assert result.states_told == 3  # with the first sample, then every 25
+    result = emulate_system(folder, TARGET, DESIGN, recording, samples=45)
+    assert (result.samples, result.missing, result.mismatches) == (45, 0, 0)
+    assert result.states_told == 2
 
-    _, table = table_of(DESIGN, recording, 60)
+    _, table = table_of(DESIGN, recording, 45)
     frames = Decoder().feed(run_system(folder, table, timing_of(DESIGN)).stream)
     told = [i for i, frame in enumerate(frames) if frame.name == "TILT_STATE"]
-    assert [frames[i - 1].name for i in told] == ["TILT_SAMPLE"] * 3
+    assert [frames[i - 1].name for i in told] == ["TILT_SAMPLE"] * 2
     sequences = [frames[i].message.sequence for i in told]
     assert sequences == [frames[i - 1].message.sequence for i in told]
-    assert sequences[0] == 0
-    assert set(np.diff(sequences)) == {25}
+    assert np.diff(sequences) == [25]
 
 
 @pytest.mark.parametrize("bus", ["axi4lite", "wishbone"])
@@ -151,6 +151,19 @@ def test_a_filter_without_a_core_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setitem(long_state.FILTERS._parts, long_state.NAME, bare)
     with pytest.raises(RenderError, match=r"the stand-in has no VHDL core; .*: complementary"):
         render_target(DESIGN, TARGET)
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "baud"), [(25.0, 115_200), (1000.0 / 6, 230_400), (500.0, 460_800), (1000.0, 1_000_000)]
+)
+def test_no_sample_is_lost_while_a_state_is_sent(
+    monkeypatch: pytest.MonkeyPatch, rate_hz: float, baud: int
+) -> None:
+    """Twice the time between samples is longer than both frames and a reading of the sensor."""
+    monkeypatch.setitem(long_state.RATES_HZ, 17, rate_hz)
+    fpga = render_context(long_state.design(), TARGET).fpga
+    assert fpga.baud == baud
+    assert 10 * (55 + 84) / baud + 0.5e-3 < 2 / rate_hz
 
 
 def test_the_line_has_room_for_the_state() -> None:

@@ -125,13 +125,18 @@ def gains_per_unit(period_s: float) -> tuple[float, float, float]:
     return 0.5 * period_s**2, period_s, period_s
 
 
+def bias_turn(scale: float, period_s: float) -> float:
+    """Return the half-angle that a bias of one rad/s of an axis with a scale makes in a sample."""
+    return (1.0 + scale) * 0.5 * period_s
+
+
 def _gains(design: FilterDesign, own: Settings, formats: ObserverFormats) -> ObserverGains:
     period_s, bits = design.period_s, gain_bits(formats)
     kt, kv, kb = gains_per_unit(period_s)
     cal = own.calibration
     biases = zip(cal.gyro_scale, cal.gyro_bias_rad_s, strict=True)
     limit = _fixed(0.5 * BIAS_LIMIT_RAD_S * period_s, formats.bias)
-    turns = _triple(tuple((1.0 + s) * 0.5 * b * period_s for s, b in biases), formats.bias)
+    turns = _triple(tuple(b * bias_turn(s, period_s) for s, b in biases), formats.bias)
     x, y, z = (min(max(raw, -limit), limit) for raw in turns)
     return ObserverGains(
         kt_raw=_gain(design, "kt", own.kt_rad_m * kt, bits[0], 31),

@@ -53,6 +53,7 @@ def constant_registers(
     return tuple(
         Register(name=name, address=WORD_BYTES * i, description=description, fields=fields)
         for i, (name, description, fields) in enumerate(words)
+        if fields
     )
 
 
