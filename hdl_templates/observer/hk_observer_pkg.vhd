@@ -19,12 +19,12 @@ package hk_observer_pkg is
 
   -- Those of the design.
   constant design_settings_c : hk_settings_t := (
-    kt          => kt_c,
-    kv          => kv_c,
-    kb          => kb_c,
-    gyro_bias_x => gyro_bias_x_c,
-    gyro_bias_y => gyro_bias_y_c,
-    gyro_bias_z => gyro_bias_z_c
+    kt          => to_signed(kt_c, 32),
+    kv          => to_signed(kv_c, 32),
+    kb          => to_signed(kb_c, 32),
+    gyro_bias_x => to_signed(bias_x_c, 32),
+    gyro_bias_y => to_signed(bias_y_c, 32),
+    gyro_bias_z => to_signed(bias_z_c, 32)
   );
 
 end package hk_observer_pkg;

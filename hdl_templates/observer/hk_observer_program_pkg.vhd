@@ -166,17 +166,6 @@ end package hk_observer_program_pkg;
 
 package body hk_observer_program_pkg is
 
-  -- 2**16 shifted.
-  function left (bits : natural) return std_logic_vector is
-  begin
-    return std_logic_vector(to_signed(2 ** (16 + bits), 32));
-  end function left;
-
-  function right (bits : natural) return std_logic_vector is
-  begin
-    return std_logic_vector(to_signed(2 ** (16 - bits), 32));
-  end function right;
-
   function word (value : integer) return std_logic_vector is
   begin
     return std_logic_vector(to_signed(value, 32));
@@ -187,53 +176,53 @@ package body hk_observer_program_pkg is
   begin
     words_v                     := (others => (others => '0'));
     words_v(unit)               := word(1);
-    words_v(sixth)              := word(715827883);
-    words_v(fifth)              := word(858993459);
-    words_v(twenty_fourth)      := word(178956971);
+    words_v(sixth)              := word(sixth_c);
+    words_v(fifth)              := word(fifth_c);
+    words_v(twenty_fourth)      := word(twenty_fourth_c);
     words_v(nearly_half)        := word(2147483647);
-    words_v(half_per_g)         := word(1751859114);
+    words_v(half_per_g)         := word(half_per_g_c);
     words_v(one_27)             := word(2 ** 27);
     words_v(one_28)             := word(2 ** 28);
     words_v(half_30)            := word(2 ** 29);
-    words_v(accel_offset_x)     := std_logic_vector(accel_offset_x_c);
-    words_v(accel_offset_y)     := std_logic_vector(accel_offset_y_c);
-    words_v(accel_offset_z)     := std_logic_vector(accel_offset_z_c);
-    words_v(acceleration_limit) := std_logic_vector(acceleration_limit_c);
-    words_v(first_force_limit)  := std_logic_vector(first_force_limit_c);
-    words_v(correction_limit)   := std_logic_vector(correction_limit_c);
-    words_v(bias_limit)         := std_logic_vector(bias_limit_c);
-    words_v(start_limit)        := word(2 ** 25);
-    words_v(first_start_gain)   := std_logic_vector(start_gain_c);
-    words_v(start_end)          := std_logic_vector(start_end_c);
-    words_v(clip_gain)          := word(2 ** 26);
-    words_v(rate_limit)         := std_logic_vector(rate_limit_c);
-    words_v(force_limit)        := std_logic_vector(force_limit_c);
-    words_v(mean_limit)         := std_logic_vector(mean_limit_c);
-    words_v(rest_samples)       := std_logic_vector(rest_samples_c);
-    words_v(design_rest_gain)   := std_logic_vector(rest_gain_c);
-    words_v(clip_count)         := std_logic_vector(shift_left(clip_count_c, 1));
-    words_v(lead)               := std_logic_vector(lead_c);
-    words_v(lead_limit)         := word(2 ** 25);
+    words_v(accel_offset_x)     := word(accel_offset_x_c);
+    words_v(accel_offset_y)     := word(accel_offset_y_c);
+    words_v(accel_offset_z)     := word(accel_offset_z_c);
+    words_v(acceleration_limit) := word(acceleration_limit_c);
+    words_v(first_force_limit)  := word(first_force_limit_c);
+    words_v(correction_limit)   := word(correction_limit_c);
+    words_v(bias_limit)         := word(bias_limit_c);
+    words_v(start_limit)        := word(start_limit_c);
+    words_v(first_start_gain)   := word(start_gain_c);
+    words_v(start_end)          := word(start_end_c);
+    words_v(clip_gain)          := word(clip_gain_c);
+    words_v(rate_limit)         := word(rest_rate_c);
+    words_v(force_limit)        := word(rest_force_c);
+    words_v(mean_limit)         := word(mean_limit_c);
+    words_v(rest_samples)       := word(rest_samples_c);
+    words_v(design_rest_gain)   := word(rest_gain_c);
+    words_v(clip_count)         := word(2 * clip_count_c);
+    words_v(lead)               := word(lead_c);
+    words_v(lead_limit)         := word(lead_limit_c);
 
-    words_v(gyro_gain_x)  := std_logic_vector(gyro_gain_x_c);
-    words_v(gyro_gain_y)  := std_logic_vector(gyro_gain_y_c);
-    words_v(gyro_gain_z)  := std_logic_vector(gyro_gain_z_c);
-    words_v(accel_gain_x) := std_logic_vector(accel_gain_x_c);
-    words_v(accel_gain_y) := std_logic_vector(accel_gain_y_c);
-    words_v(accel_gain_z) := std_logic_vector(accel_gain_z_c);
-    words_v(by_turn)      := right(turn_shift_c);
-    words_v(by_bias)      := right(bias_shift_c);
-    words_v(by_mean)      := right(mean_shift_c);
+    words_v(gyro_gain_x)  := word(gyro_gain_x_c);
+    words_v(gyro_gain_y)  := word(gyro_gain_y_c);
+    words_v(gyro_gain_z)  := word(gyro_gain_z_c);
+    words_v(accel_gain_x) := word(accel_gain_x_c);
+    words_v(accel_gain_y) := word(accel_gain_y_c);
+    words_v(accel_gain_z) := word(accel_gain_z_c);
+    words_v(by_turn)      := word(2 ** (16 - turn_right_c));
+    words_v(by_bias)      := word(2 ** (16 - bias_right_c));
+    words_v(by_mean)      := word(2 ** (16 - mean_shift_c));
 
-    words_v(one_c)              := left(0);
-    words_v(times_2)            := left(1);
-    words_v(times_8)            := left(3);
-    words_v(times_16)           := left(4);
-    words_v(times_32)           := left(5);
-    words_v(times_acceleration) := left(acceleration_left_shift_c);
-    words_v(times_first_bias)   := left(first_bias_left_shift_c);
-    words_v(times_rest)         := left(rest_left_shift_c);
-    words_v(times_count)        := left(13);
+    words_v(one_c)              := word(2 ** 16);
+    words_v(times_2)            := word(2 ** 17);
+    words_v(times_8)            := word(2 ** 19);
+    words_v(times_16)           := word(2 ** 20);
+    words_v(times_32)           := word(2 ** 21);
+    words_v(times_acceleration) := word(2 ** (16 + acceleration_left_c));
+    words_v(times_first_bias)   := word(2 ** (16 + first_bias_left_c));
+    words_v(times_rest)         := word(2 ** (16 + rest_left_c));
+    words_v(times_count)        := word(2 ** 29);
     return words_v;
   end function initial_words;
 
@@ -247,6 +236,14 @@ package body hk_observer_program_pkg is
     end if;
     return nothing_c;
   end function only_with;
+
+  function repeated (program : program_t; times : positive) return program_t is
+  begin
+    if times = 1 then
+      return program;
+    end if;
+    return program & repeated(program, times - 1);
+  end function repeated;
 
   -- What the accumulator holds, at most the limit in size, goes into a word.
   function clamp (limit, into : word_t) return program_t is
@@ -377,9 +374,8 @@ package body hk_observer_program_pkg is
     constant upright_first_c : program_t :=
       first_force(force_x, spare_x) & first_force(force_y, spare_y)
       & first_force(force_z, spare_z) & upright_c;
-    constant thrice_c : program_t := normalise_c & normalise_c & normalise_c;
   begin
-    return ending(forces_c & loading_c & upright_first_c & thrice_c & thrice_c);
+    return ending(forces_c & loading_c & upright_first_c & repeated(normalise_c, first_rounds_c));
   end function first_program;
 
   -- Rest: a running mean, and whether the count is far from it.
@@ -646,8 +642,8 @@ package body hk_observer_program_pkg is
       followed_c & follow(b_x, row_xx, row_yx, spare_x) & follow(b_y, row_xy, row_yy, spare_y)
       & follow(b_z, row_xz, row_yz, spare_z);
   begin
-    return only_with(has_rest_c, rest) & only_with(sees_clipping_c, clipping) & motion_c & velocity
-           & correction_c & align & correct_c & normalise_c & bias_c & decay_c;
+    return only_with(has_rest_c, rest) & only_with(has_clip_c, clipping) & motion_c & velocity
+           & correction_c & only_with(has_align_c, align) & correct_c & normalise_c & bias_c & decay_c;
   end function step_program;
 
   -- Up in sensor axes.
