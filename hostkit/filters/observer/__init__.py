@@ -17,6 +17,7 @@ from hostkit.filters.observer.parameters import (
     parameter,
     parameters,
 )
+from hostkit.filters.observer.response import response
 from hostkit.filters.observer.run_time import (
     RUN_TIME,
     device_parameters,
@@ -48,6 +49,7 @@ __all__ = [
     "lower",
     "parameter",
     "parameters",
+    "response",
     "run_float",
     "run_integer",
     "setting_words",
@@ -70,6 +72,7 @@ OBSERVER: Filter[ObserverSpec] = Filter(
         with_told=with_told,
     ),
     facts=facts,
+    response=response,
     context=filter_context,
     setting_words=setting_words,
     core=CORE,
