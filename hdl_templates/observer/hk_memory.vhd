@@ -9,8 +9,9 @@ use work.hk_observer_program_pkg.all;
 entity hk_memory is
   port (
     clk        : in  std_logic;
-    read       : in  unsigned(7 downto 0);
-    word       : out signed(31 downto 0);  -- a clock later
+    read       : in  std_logic;
+    read_from  : in  unsigned(7 downto 0);
+    word       : out signed(31 downto 0);  -- a clock later, until the next
     write      : in  std_logic;
     write_into : in  unsigned(7 downto 0);
     write_word : in  signed(31 downto 0)
@@ -29,7 +30,9 @@ begin
       if write = '1' then
         words_r(to_integer(write_into)) <= std_logic_vector(write_word);
       end if;
-      word <= signed(words_r(to_integer(read)));
+      if read = '1' then
+        word <= signed(words_r(to_integer(read_from)));
+      end if;
     end if;
   end process;
 

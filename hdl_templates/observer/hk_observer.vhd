@@ -69,9 +69,9 @@ architecture rtl of hk_observer is
   signal start       : std_logic;
   signal place       : unsigned(place_bits_c - 1 downto 0);
   signal done        : std_logic;
-  signal input_index : unsigned(5 downto 0);
+  signal input_index : std_logic_vector(5 downto 0);
   signal input       : signed(31 downto 0);
-  signal component   : std_logic;
+  signal measure     : std_logic;
   signal result      : signed(31 downto 0);
 
   -- Components of up: against body x, along body y, and along body z, which is the last to come.
@@ -167,7 +167,7 @@ begin
   inputs : process (input_index, counts_r, settings)
   begin
     if input_index(3) = '0' and input_index(2 downto 1) /= "11" then
-      input <= shift_left(resize(counts_r(to_integer(input_index(2 downto 0))), 32), 1);
+      input <= shift_left(resize(counts_r(to_integer(unsigned(input_index(2 downto 0)))), 32), 1);
     elsif input_index(3 downto 0) = "0110" then
       input <= settings.kt;
     elsif input_index(3 downto 0) = "0111" then
@@ -192,7 +192,7 @@ begin
       done        => done,
       input_index => input_index,
       input       => input,
-      component   => component,
+      measure     => measure,
       result      => result,
       state_index => state_index,
       state_word  => state_word,
@@ -210,7 +210,7 @@ begin
       if result(31) = '1' then
         size_v := -result;
       end if;
-      if component = '1' then
+      if measure = '1' then
         sizes_r <= sizes_r(1 to 2) & unsigned(size_v(29 downto 0));
         signs_r <= signs_r(1 to 2) & result(31);
       end if;

@@ -248,11 +248,11 @@ package body hk_observer_program_pkg is
   -- What the accumulator holds, at most the limit in size, goes into a word.
   function clamp (limit, into : word_t) return program_t is
     constant program_c : program_t := (
-      less(limit, when_ => test),
-      take(zero, when_ => if_not),
+      less(limit, mode => test),
+      take(zero, mode => if_not),
       plus(limit),
-      plus(limit, when_ => test),
-      take(zero, when_ => if_negative),
+      plus(limit, mode => test),
+      take(zero, mode => if_negative),
       less(limit, into => into)
     );
   begin
@@ -263,11 +263,11 @@ package body hk_observer_program_pkg is
   function note_beyond (value, limit, note : word_t) return program_t is
     constant program_c : program_t := (
       take(limit),
-      less(value, when_ => test),
-      take(unit, into => note, when_ => if_negative),
+      less(value, mode => test),
+      take(unit, into => note, mode => if_negative),
       take(limit),
-      plus(value, when_ => test),
-      take(unit, into => note, when_ => if_negative)
+      plus(value, mode => test),
+      take(unit, into => note, mode => if_negative)
     );
   begin
     return program_c;
@@ -322,12 +322,12 @@ package body hk_observer_program_pkg is
     negate(spare_x, into => q_2),
     take(half_30),
     plus(spare_z, into => q_0),
-    take(spare_z, when_ => test),
+    take(spare_z, mode => test),
     take(half_30),
-    less(spare_z, into => q_1, when_ => if_negative),
-    take(spare_y, into => q_0, when_ => if_negative),
-    take(zero, into => q_2, when_ => if_negative),
-    take(spare_x, into => q_3, when_ => if_negative)
+    less(spare_z, into => q_1, mode => if_negative),
+    take(spare_y, into => q_0, mode => if_negative),
+    take(zero, into => q_2, mode => if_negative),
+    take(spare_x, into => q_3, mode => if_negative)
   );
 
   constant load_c : program_t := (
@@ -408,11 +408,11 @@ package body hk_observer_program_pkg is
   constant count_still_c : program_t := (
     take(still),
     plus(unit),
-    less(rest_samples, when_ => test),
-    take(zero, when_ => if_not),
+    less(rest_samples, mode => test),
+    take(zero, mode => if_not),
     plus(rest_samples, into => still),
-    negate(loud, when_ => test),
-    take(zero, into => still, when_ => if_negative)
+    negate(loud, mode => test),
+    take(zero, into => still, mode => if_negative)
   );
 
   -- The first rest: the mean rate becomes the bias, and the alignment starts again.
@@ -428,12 +428,12 @@ package body hk_observer_program_pkg is
   constant first_rest_c : program_t := (
     take(still),
     less(rest_samples),
-    less(rested, when_ => test),  -- negative but on the first rest
-    take(spare_x, into => b_x, when_ => if_not),
-    take(spare_y, into => b_y, when_ => if_not),
-    take(spare_z, into => b_z, when_ => if_not),
-    take(first_start_gain, into => start_gain, when_ => if_not),
-    take(unit, into => rested, when_ => if_not)
+    less(rested, mode => test),  -- negative but on the first rest
+    take(spare_x, into => b_x, mode => if_not),
+    take(spare_y, into => b_y, mode => if_not),
+    take(spare_z, into => b_z, mode => if_not),
+    take(first_start_gain, into => start_gain, mode => if_not),
+    take(unit, into => rested, mode => if_not)
   );
 
   function rest return program_t is
@@ -446,12 +446,12 @@ package body hk_observer_program_pkg is
 
   -- After a rate that was clipped the alignment has some weight again.
   constant clipped_c : program_t := (
-    negate(loud, when_ => test),
+    negate(loud, mode => test),
     take(zero, into => least_gain),
-    take(clip_gain, into => least_gain, when_ => if_negative),
+    take(clip_gain, into => least_gain, mode => if_negative),
     take(start_gain),
-    less(least_gain, when_ => test),
-    take(zero, when_ => if_negative),
+    less(least_gain, mode => test),
+    take(zero, mode => if_negative),
     plus(least_gain, into => start_gain)
   );
 
@@ -573,8 +573,8 @@ package body hk_observer_program_pkg is
       take(start_gain),
       less(spare_x, times_2, into => start_gain),
       take(start_end),
-      less(start_gain, when_ => test),
-      take(zero, into => start_gain, when_ => if_not),
+      less(start_gain, mode => test),
+      take(zero, into => start_gain, mode => if_not),
       take(u_x, start_gain, into => spare_x),
       take(u_y, start_gain, into => spare_y),
       take(u_x),
@@ -612,10 +612,10 @@ package body hk_observer_program_pkg is
     take(turn_z, times_rest, into => spare_z),
     take(design_rest_gain, into => rest_gain),
     take(still),
-    less(rest_samples, when_ => test),
-    take(zero, into => follow_x, when_ => if_not),
-    take(zero, into => follow_y, when_ => if_not),
-    take(zero, into => rest_gain, when_ => if_negative)
+    less(rest_samples, mode => test),
+    take(zero, into => follow_x, mode => if_not),
+    take(zero, into => follow_y, mode => if_not),
+    take(zero, into => rest_gain, mode => if_negative)
   );
 
   function follow (bias, along_x, along_y, turn : word_t) return program_t is

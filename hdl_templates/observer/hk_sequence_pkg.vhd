@@ -29,20 +29,20 @@ package hk_sequence_pkg is
     into  : word_t;
     keep  : boolean;  -- what the accumulator holds
     minus : boolean;
-    when_ : condition_t;
+    mode : condition_t;
     last  : boolean;  -- of its program
   end record;
   type program_t is array (natural range <>) of instruction_t;
 
   -- The product alone, or less than nothing, or onto what the accumulator holds, or off it.
   function take (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t;
+                 mode : condition_t := always) return instruction_t;
   function negate (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                   when_ : condition_t := always) return instruction_t;
+                   mode : condition_t := always) return instruction_t;
   function plus (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t;
+                 mode : condition_t := always) return instruction_t;
   function less (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t;
+                 mode : condition_t := always) return instruction_t;
 
   -- The program with its last instruction marked.
   function ending (program : program_t) return program_t;
@@ -64,7 +64,7 @@ package hk_sequence_pkg is
     waits      : unsigned(2 downto 0);  -- clocks behind the instruction before
     keep       : std_logic;
     minus      : std_logic;
-    when_      : std_logic_vector(1 downto 0);
+    mode      : std_logic_vector(1 downto 0);
     last       : std_logic;
   end record;
   function decoded (code : code_t) return fields_t;
@@ -79,37 +79,37 @@ end package hk_sequence_pkg;
 package body hk_sequence_pkg is
 
   function take (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t is
+                 mode : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => false, minus => false, when_ => when_,
+    instruction_v := (a, b, into, keep => false, minus => false, mode => mode,
                       last => false);
     return instruction_v;
   end function take;
 
   function negate (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                   when_ : condition_t := always) return instruction_t is
+                   mode : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => false, minus => true, when_ => when_,
+    instruction_v := (a, b, into, keep => false, minus => true, mode => mode,
                       last => false);
     return instruction_v;
   end function negate;
 
   function plus (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t is
+                 mode : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => true, minus => false, when_ => when_,
+    instruction_v := (a, b, into, keep => true, minus => false, mode => mode,
                       last => false);
     return instruction_v;
   end function plus;
 
   function less (a : word_t; b : word_t := one_c; into : word_t := nowhere_c;
-                 when_ : condition_t := always) return instruction_t is
+                 mode : condition_t := always) return instruction_t is
     variable instruction_v : instruction_t;
   begin
-    instruction_v := (a, b, into, keep => true, minus => true, when_ => when_,
+    instruction_v := (a, b, into, keep => true, minus => true, mode => mode,
                       last => false);
     return instruction_v;
   end function less;
@@ -148,7 +148,7 @@ package body hk_sequence_pkg is
     code_v(27)           := bit_of(instruction.keep);
     code_v(28)           := bit_of(instruction.minus);
     code_v(30 downto 29) :=
-      std_logic_vector(to_unsigned(condition_t'pos(instruction.when_), 2));
+      std_logic_vector(to_unsigned(condition_t'pos(instruction.mode), 2));
     code_v(31)           := bit_of(instruction.last);
     return code_v;
   end function coded;
@@ -192,7 +192,7 @@ package body hk_sequence_pkg is
     fields_v.waits := unsigned(code(26 downto 24));
     fields_v.keep  := code(27);
     fields_v.minus := code(28);
-    fields_v.when_ := code(30 downto 29);
+    fields_v.mode := code(30 downto 29);
     fields_v.last  := code(31);
     return fields_v;
   end function decoded;

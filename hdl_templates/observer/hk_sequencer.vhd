@@ -19,9 +19,9 @@ entity hk_sequencer is
     start       : in  std_logic;
     place       : in  unsigned(place_bits_c - 1 downto 0);  -- of the first instruction
     done        : out std_logic;  -- for one clock: the last result is there
-    input_index : out unsigned(5 downto 0);
+    input_index : out std_logic_vector(5 downto 0);
     input       : in  signed(31 downto 0);  -- the word of that index, at once
-    component   : out std_logic;  -- for one clock: result is one for the arc tangent
+    measure     : out std_logic;  -- for one clock: result is one for the arc tangent
     result      : out signed(31 downto 0);
     state_index : in  unsigned(4 downto 0);  -- while no program runs
     state_word  : out signed(31 downto 0);   -- a clock later
@@ -50,7 +50,7 @@ architecture rtl of hk_sequencer is
     whole : std_logic;
     keep  : std_logic;
     minus : std_logic;
-    when_ : std_logic_vector(1 downto 0);
+    mode : std_logic_vector(1 downto 0);
     last  : std_logic;
   end record;
   type steps_t is array (operands_c to write_c) of step_t;
@@ -71,11 +71,13 @@ architecture rtl of hk_sequencer is
   signal lowers_r : std_logic_vector(operands_c to sum_c);
   signal uppers_r : std_logic_vector(operands_c to write_c);
 
+  signal reads         : std_logic;
+  signal reads_b       : std_logic;
   signal read_b        : unsigned(7 downto 0);
   signal word_a        : signed(31 downto 0);
   signal word_b        : signed(31 downto 0);
   signal input_r       : std_logic;
-  signal input_index_r : unsigned(5 downto 0);
+  signal input_index_r : std_logic_vector(5 downto 0);
   signal multiply_r    : std_logic;
   signal factor_r      : signed(31 downto 0);
   signal coefficient_r : signed(17 downto 0);
@@ -85,13 +87,14 @@ architecture rtl of hk_sequencer is
   signal executes      : std_logic;
   signal executed_r    : std_logic;
   signal accumulator_r : signed(33 downto 0);
-  signal negative_r    : std_logic;  -- at the last test
+  signal negative      : std_logic;  -- at the last test
+  signal negative_r    : std_logic;
   signal write         : std_logic;
 
 begin
 
   now  <= decoded(code_r);
-  begins <= '1' when runs_r = '1' and second_r = '0' and waited_r = now.waits else '0';
+  begins <= '1' when runs_r = '1' and second_r = '0' and waited_r = decoded(code_r).waits else '0';
   short  <= now.b(7) and now.b(5);
   lower  <= begins and not short;
   upper  <= (begins and short) or second_r;
@@ -135,7 +138,7 @@ begin
                               whole => now.b(7),
                               keep  => now.keep,
                               minus => now.minus,
-                              when_ => now.when_,
+                              mode => now.mode,
                               last  => now.last);
       steps_r(product_c to write_c) <= steps_r(operands_c to write_c - 1);
 
@@ -148,12 +151,15 @@ begin
     end if;
   end process follow;
 
-  read_b <= now.b when runs_r = '1' else resize(state_index, 8);
+  reads   <= lower or upper;
+  reads_b <= reads or not runs_r;
+  read_b  <= now.b when runs_r = '1' else resize(state_index, 8);
 
   memory_a : entity work.hk_memory
     port map (
       clk        => clk,
-      read       => now.a,
+      read       => reads,
+      read_from  => now.a,
       word       => word_a,
       write      => write,
       write_into => steps_r(write_c).into,
@@ -163,7 +169,8 @@ begin
   memory_b : entity work.hk_memory
     port map (
       clk        => clk,
-      read       => read_b,
+      read       => reads_b,
+      read_from  => read_b,
       word       => word_b,
       write      => write,
       write_into => steps_r(write_c).into,
@@ -176,7 +183,7 @@ begin
   operands : process (clk)
   begin
     if rising_edge(clk) then
-      input_index_r <= now.a(5 downto 0);
+      input_index_r <= std_logic_vector(now.a(5 downto 0));
       input_r       <= now.a(7) and now.a(6);
 
       factor_r <= word_a;
@@ -210,10 +217,12 @@ begin
 
   product <= raw_product;
 
-  executes <= '1' when steps_r(accumulate_c).when_ = always_c
-                    or steps_r(accumulate_c).when_ = test_c
-                    or (steps_r(accumulate_c).when_ = if_negative_c and negative_r = '1')
-                    or (steps_r(accumulate_c).when_ = if_not_c and negative_r = '0')
+  negative <= accumulator_r(33) when uppers_r(write_c) = '1' and steps_r(write_c).mode = test_c
+              else negative_r;
+  executes <= '1' when steps_r(accumulate_c).mode = always_c
+                    or steps_r(accumulate_c).mode = test_c
+                    or (steps_r(accumulate_c).mode = if_negative_c and negative = '1')
+                    or (steps_r(accumulate_c).mode = if_not_c and negative = '0')
               else '0';
 
   accumulate : process (clk)
@@ -248,9 +257,7 @@ begin
       end if;
       executed_r <= uppers_r(accumulate_c) and executes;
 
-      if uppers_r(write_c) = '1' and steps_r(write_c).when_ = test_c then
-        negative_r <= accumulator_r(33);
-      end if;
+      negative_r <= negative;
       if rst = '1' then
         executed_r <= '0';
       end if;
@@ -258,7 +265,7 @@ begin
   end process accumulate;
 
   write     <= executed_r and not steps_r(write_c).into(7);
-  component <= executed_r and steps_r(write_c).into(7) and steps_r(write_c).into(6);
+  measure   <= executed_r and steps_r(write_c).into(7) and steps_r(write_c).into(6);
   result    <= accumulator_r(31 downto 0);
   done      <= uppers_r(write_c) and steps_r(write_c).last;
 
