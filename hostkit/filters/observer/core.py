@@ -1,6 +1,6 @@
 """The VHDL core of the observer: one program, one sample at a time."""
 
-from hostkit.filters.core import CoreFacts, CoreFeature, CoreQuantity, FilterCore, Latency
+from hostkit.filters.core import CoreFacts, FilterCore, Latency
 from hostkit.filters.observer.spec import ObserverSpec
 
 HAND_OVER_CLOCKS = 1
