@@ -7,6 +7,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.filters.core import FilterCore
 from hostkit.filters.sensor_terms import Calibrated, take_no_terms
 from hostkit.provenance import CalibrationTerm
 from hostkit.records import FilterDesign
@@ -228,6 +229,8 @@ class Filter(Generic[SpecT]):
         numbers of shape ``(N,)`` for N frequencies in Hz.
     setting_words
         What the registers of an FPGA can change, in the order of ``hk_settings_t``.
+    core
+        Its VHDL core; None where there is none.
     calibrated
         A design with what it has a place for of the terms of a calibration.
     """
@@ -243,4 +246,5 @@ class Filter(Generic[SpecT]):
     response: Callable[[FilterDesign, Vector], tuple[Weights, Weights]]
     context: Callable[[FilterDesign, SpecT], object]
     setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]
+    core: FilterCore[SpecT] | None = None
     calibrated: Callable[[FilterDesign, tuple[CalibrationTerm, ...]], Calibrated] = take_no_terms

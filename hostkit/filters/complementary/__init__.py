@@ -2,6 +2,7 @@
 
 from hostkit.filters.complementary.calibration import calibrated
 from hostkit.filters.complementary.context import filter_context
+from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
 from hostkit.filters.complementary.gate import force_gate
@@ -94,5 +95,6 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
     calibrated=calibrated,
 )

@@ -2,6 +2,7 @@
 
 from hostkit.filters.filter import Filter, RunTime
 from hostkit.filters.observer.context import filter_context
+from hostkit.filters.observer.core import CORE
 from hostkit.filters.observer.facts import facts
 from hostkit.filters.observer.float_model import run_float
 from hostkit.filters.observer.integer_model import run_integer, step_integer
@@ -75,5 +76,6 @@ OBSERVER: Filter[ObserverSpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
     calibrated=take_sensor_terms,
 )
