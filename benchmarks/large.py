@@ -18,7 +18,7 @@ from hostkit.cli.inputs import say
 from hostkit.errors import HostkitError
 from hostkit.recordings import open_large
 from hostkit.tuning import TuningOptions
-from hostkit.tuning.tune import tuning_problem
+from hostkit.tuning.complementary import tuning_problem
 
 CHOICE = "HOSTKIT_BENCH_SAMPLES"
 """Environment variable: how many samples."""

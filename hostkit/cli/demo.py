@@ -20,6 +20,7 @@ from hostkit.design_file import digest, save_design
 from hostkit.emulation.board import BuildResult
 from hostkit.emulation.run import EmulationResult, build, emulate
 from hostkit.errors import EmulationError, HostkitError, ToolMissingError, VerdictError
+from hostkit.filters import FILTERS
 from hostkit.link.ports.transport import open_transport
 from hostkit.monitor import Session, SessionResult
 from hostkit.optimisers import qpso
@@ -176,9 +177,9 @@ def _tune(recording: Recording, path: Path, seed: int) -> tuple[TuningResult, st
     )
     result = tune((recording,), options)
     save_design(result.design, path)
-    eta = result.design.parameter("eta")
     error = math.degrees(result.rms_rad)
-    return result, f"{path}, design {digest(result.design)}, eta {eta:.5f}, {error:.3f} deg RMSE"
+    first = FILTERS[result.design.filter].facts(result.design)[0].text()
+    return result, f"{path}, design {digest(result.design)}, {first}, {error:.3f} deg RMSE"
 
 
 def _emulate(

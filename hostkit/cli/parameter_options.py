@@ -1,72 +1,86 @@
 """The options of ``tune`` that name filter parameters, in the units of the screen."""
 
 import math
-from collections.abc import Iterable
 
 import click
 
-from hostkit.filters.complementary import BY_NAME
-from hostkit.records import Axis
-from hostkit.tuning import RANGE_BY_NAME, RANGES, FixedParameter, FreeName, SearchRange
+from hostkit.tuning import TUNERS, FixedParameter, FreeName, SearchRange
+from hostkit.tuning.tuner import Tunable, Tuner
 
-FREE_NAMES: dict[str, FreeName] = {r.name.replace("_", "-"): r.name for r in RANGES}
 ALL = "all"
-AXIS_NAMES: tuple[Axis, ...] = ("roll", "pitch")
+FILTER_OPTION = "filter_name"
 
 
-def parse_free(ctx: click.Context, option: click.Parameter, text: str) -> tuple[FreeName, ...]:
-    """Read names of parameters, separated by commas, or ``all``."""
+def parse_free(
+    ctx: click.Context, option: click.Parameter, text: str | None
+) -> tuple[FreeName, ...]:
+    """Read names of parameters, separated by commas, or ``all``; nothing leaves it open."""
+    tuner = _tuner(ctx)
+    if text is None:
+        return tuner.free
     if text == ALL:
-        return tuple(FREE_NAMES.values())
-    return tuple(_known(part.strip()) for part in text.split(","))
+        return tuple(t.name for t in tuner.tunables)
+    return tuple(_known(tuner, part.strip()).name for part in text.split(","))
 
 
 def parse_fixed(
     ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
 ) -> tuple[FixedParameter, ...]:
     """Read ``NAME=VALUE`` or ``NAME-AXIS=VALUE`` into the units of a design."""
-    return tuple(_fixed(text) for text in texts)
+    return tuple(_fixed(_tuner(ctx), text) for text in texts)
 
 
 def parse_ranges(
     ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
 ) -> tuple[SearchRange, ...]:
     """Read ``NAME=LOW:HIGH`` into the units of a design."""
-    return tuple(_range(text) for text in texts)
+    return tuple(_range(_tuner(ctx), text) for text in texts)
 
 
-def _fixed(text: str) -> FixedParameter:
+def _tuner(ctx: click.Context) -> Tuner:
+    return TUNERS[ctx.params[FILTER_OPTION]]
+
+
+def _fixed(tuner: Tuner, text: str) -> FixedParameter:
     name, _, value = text.partition("=")
-    axis: Axis | None = None
-    for candidate in AXIS_NAMES:
-        if name.endswith(f"-{candidate}"):
-            axis, name = candidate, name.removesuffix(f"-{candidate}")
-    known = _known(name)
-    if axis is not None and (known == "tau" or not BY_NAME[known].per_axis):
+    stem, _, last = name.rpartition("-")
+    axis: str | None = None
+    if last in {axis for t in tuner.tunables for axis in t.axes}:
+        axis, name = last, stem
+    known = _known(tuner, name)
+    if axis is not None and axis not in known.axes:
         raise click.BadParameter(f"{name} is one for all axes")
-    return FixedParameter(name=known, value=_number(value) / _shown_per_unit(known), axis=axis)
+    return FixedParameter(name=known.name, value=_number(value) / known.shown_per_unit, axis=axis)
 
 
-def _range(text: str) -> SearchRange:
+def _range(tuner: Tuner, text: str) -> SearchRange:
     name, _, ends = text.partition("=")
-    known = _known(name)
+    known = _known(tuner, name)
     low, colon, high = ends.partition(":")
     if not colon:
         raise click.BadParameter(f"{text!r} is not NAME=LOW:HIGH")
-    lowest, highest = (_number(end) / _shown_per_unit(known) for end in (low, high))
-    is_log = RANGE_BY_NAME[known].is_log
+    lowest, highest = (_number(end) / known.shown_per_unit for end in (low, high))
+    is_log = known.search.is_log
     if lowest >= highest or (is_log and lowest <= 0.0):
         least = ", the lower one above 0" if is_log else ""
         raise click.BadParameter(
             f"{name} from {low} to {high}: the lower end must be below the upper one{least}"
         )
-    return SearchRange(name=known, lowest=lowest, highest=highest, is_log=is_log)
+    return SearchRange(name=known.name, lowest=lowest, highest=highest, is_log=is_log)
 
 
-def _known(name: str) -> FreeName:
-    if name not in FREE_NAMES:
-        raise click.BadParameter(f"{name!r} is no parameter; known are: {', '.join(FREE_NAMES)}")
-    return FREE_NAMES[name]
+def _known(tuner: Tuner, name: str) -> Tunable:
+    found = tuner.tunable(name.replace("-", "_"))
+    if found is None or "_" in name:
+        known = ", ".join(_option_name(t.name) for t in tuner.tunables)
+        raise click.BadParameter(
+            f"{name!r} is no parameter of the {tuner.name} filter; known are: {known}"
+        )
+    return found
+
+
+def _option_name(name: FreeName) -> str:
+    return name.replace("_", "-")
 
 
 def _number(text: str) -> float:
@@ -79,23 +93,31 @@ def _number(text: str) -> float:
     return number
 
 
-def _shown_per_unit(name: FreeName) -> float:
-    return 1.0 if name == "tau" else BY_NAME[name].shown_per_unit
+def described() -> str:
+    """Return the parameters of all filters as on the command line, with their units."""
+    return "; ".join(
+        f"{tuner.name}: "
+        + ", ".join(f"{_option_name(t.name)} ({t.shown_unit or 'no unit'})" for t in tuner.tunables)
+        for tuner in TUNERS
+    )
 
 
-def described(names: Iterable[FreeName]) -> str:
-    """Return names as on the command line, with their units."""
-    units = {"tau": "s", **{name: kind.shown_unit for name, kind in BY_NAME.items()}}
-    return ", ".join(f"{name.replace('_', '-')} ({units[name] or 'no unit'})" for name in names)
-
-
+FILTER = click.option(
+    "--filter",
+    FILTER_OPTION,
+    type=click.Choice(TUNERS.names()),
+    default="complementary",
+    show_default=True,
+    is_eager=True,
+    help="Filter to tune.",
+)
 FREE = click.option(
     "--free",
     callback=parse_free,
-    default="tau",
-    show_default=True,
     metavar="NAMES",
-    help=f"Parameters to tune, separated by commas, or 'all': {', '.join(FREE_NAMES)}.",
+    help="Parameters to tune, separated by commas, or 'all'. By default "
+    + "; ".join(f"{t.name}: {','.join(map(_option_name, t.free))}" for t in TUNERS)
+    + ".",
 )
 FIX = click.option(
     "--fix",
@@ -103,7 +125,7 @@ FIX = click.option(
     callback=parse_fixed,
     multiple=True,
     metavar="NAME=VALUE",
-    help="Set a parameter instead; may be repeated. Units: " + described(FREE_NAMES.values()) + ".",
+    help=f"Set a parameter instead; may be repeated. Parameters and units: {described()}.",
 )
 RANGE = click.option(
     "--range",

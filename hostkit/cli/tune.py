@@ -10,7 +10,7 @@ from hostkit.cli.fleet import fleet_options
 from hostkit.cli.fleet import run as run_fleet
 from hostkit.cli.inputs import JSON, RECORDINGS_OR_NONE, read_for_tuning, say
 from hostkit.cli.output import emit_json
-from hostkit.cli.parameter_options import FIX, FREE, RANGE
+from hostkit.cli.parameter_options import FILTER, FIX, FREE, RANGE
 from hostkit.cli.tune_output import show, tuning_document
 from hostkit.design_file import save_design, with_acceptance_of
 from hostkit.diagnosis import diagnose, findings
@@ -58,14 +58,7 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     metavar="DIR",
     help="Tune one design for each device of DIR instead.",
 )
-@click.option(
-    "--filter",
-    "filter_name",
-    type=click.Choice(["complementary"]),
-    default="complementary",
-    show_default=True,
-    help="Filter to tune.",
-)
+@FILTER
 @click.option(
     "--axes",
     type=click.Choice(tuple(AXES)),
@@ -197,6 +190,7 @@ def tune(
       hostkit tune sweep.csv --axes both --seed 1 -o design.json
     """
     options = TuningOptions(
+        filter=filter_name,
         axes=axes,
         mounting=mounting,
         tilt=tilt,

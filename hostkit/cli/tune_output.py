@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from hostkit.design_file import digest
-from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.filters import FILTERS
 from hostkit.tuning import Interval, TuningResult
 from hostkit.units import DEG_PER_RAD
 
@@ -14,7 +14,6 @@ from hostkit.units import DEG_PER_RAD
 def tuning_document(result: TuningResult, output: Path) -> dict[str, object]:
     """Return the result of a tuning as the document ``hostkit.tune/1``."""
     design, held_out = result.design, result.held_out
-    eta = design.parameter("eta")
     assert design.tuning is not None
     return {
         "schema": "hostkit.tune/1",
@@ -22,9 +21,7 @@ def tuning_document(result: TuningResult, output: Path) -> dict[str, object]:
         "digest": digest(design),
         "filter": design.filter,
         "parameters": {p.name: p.value for p in design.parameters},
-        "eta": eta,
-        "tau_s": tau_from_eta(eta, design.period_s),
-        "crossover_hz": crossover_hz(eta, design.period_s),
+        **{fact.name: fact.value for fact in FILTERS[design.filter].facts(design)},
         "rate_hz": design.rate_hz,
         "rmse_deg": result.rms_rad * DEG_PER_RAD,
         "held_out": None
@@ -60,14 +57,11 @@ def _interval_document(interval: Interval) -> dict[str, object]:
 def show(result: TuningResult, output: Path) -> None:
     """Print the result of a tuning."""
     design = result.design
-    eta = design.parameter("eta")
     sensor, tuning = design.sensor, design.tuning
     assert tuning is not None
     what = "inclination" if design.axes == "both" else design.axes
-    click.echo(
-        f"eta {eta:.6f}  =  tau {tau_from_eta(eta, design.period_s):.4g} s  =  crossover "
-        f"{crossover_hz(eta, design.period_s):.4g} Hz  at  {design.rate_hz:g} Hz"
-    )
+    texts = [fact.text() for fact in FILTERS[design.filter].facts(design)]
+    click.echo(f"{design.filter}: {', '.join(texts)} at {design.rate_hz:g} Hz")
     for interval in result.intervals:
         click.echo(f"  {interval_text(interval)}")
     click.echo(f"RMSE of {what}: {errors_text(result)}")

@@ -12,6 +12,7 @@ from hostkit.spec import FixedPointSpec
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+Weights = NDArray[np.complex128]
 
 SpecT = TypeVar("SpecT", bound=FixedPointSpec)
 SpecOfT = TypeVar("SpecOfT", bound=FixedPointSpec, contravariant=True)
@@ -51,8 +52,8 @@ class Fact:
     ----------
     name
         Key of the number in documents; it ends with its unit.
-    label
-        What it is, for a person.
+    label, note
+        What people call it, and what it is.
     unit
         Unit on the screen; empty for a plain number.
     """
@@ -61,6 +62,11 @@ class Fact:
     label: str
     value: float
     unit: str = ""
+    note: str = ""
+
+    def text(self) -> str:
+        """Return the number with its name and unit, as on the screen."""
+        return f"{self.label} {self.value:.6g} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,6 +181,9 @@ class Filter(Generic[SpecT]):
         What people want to read of a design.
     context
         What templates see as ``filter``.
+    response
+        How a design weighs specific force and angular rate over frequency: two arrays of complex
+        numbers of shape ``(N,)`` for N frequencies in Hz.
     setting_words
         What the registers of an FPGA can change, in the order of ``hk_settings_t``.
     """
@@ -187,5 +196,6 @@ class Filter(Generic[SpecT]):
     step_integer: Callable[[SpecT, IntArray, IntArray, IntArray], IntArray]
     run_time: RunTime
     facts: Callable[[FilterDesign], tuple[Fact, ...]]
+    response: Callable[[FilterDesign, Vector], tuple[Weights, Weights]]
     context: Callable[[FilterDesign, SpecT], object]
     setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]

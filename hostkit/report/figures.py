@@ -6,12 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
-from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.filters import FILTERS
+from hostkit.records import FilterDesign
 from hostkit.report.canvas import BLUE, GREEN, GREY, INK, ORANGE, new_figure, svg_text, thinning
 from hostkit.tuning import Evaluation, Interval, Profile
 from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]
+
+LOWEST_HZ = 1e-4
+"""Where frequency responses begin."""
 
 
 def convergence(history_rad: Vector) -> str:
@@ -65,39 +69,25 @@ def residual_histogram(evaluations: Sequence[Evaluation], names: Sequence[str]) 
     return svg_text(figure, mpl)
 
 
-def frequency_response(eta: float, period_s: float, integral_gain_per_s2: float = 0.0) -> str:
+def frequency_response(design: FilterDesign) -> str:
     """Bode diagram: how the filter weighs its two sensors over frequency, with the crossover."""
     figure, axes, mpl = new_figure(rows=2, height=4.6)
     magnitude, phase = axes
-    frequency_hz = np.geomspace(1e-3 / tau_from_eta(eta, period_s), 0.5 / period_s, 400)
-    force, rate = weights(frequency_hz, eta, period_s, integral_gain_per_s2)
+    frequency_hz = np.geomspace(LOWEST_HZ, 0.5 * design.rate_hz, 2000)
+    force, rate = FILTERS[design.filter].response(design, frequency_hz)
     for weight, colour, name in ((force, ORANGE, "specific force"), (rate, BLUE, "angular rate")):
         magnitude.semilogx(frequency_hz, 20 * np.log10(np.abs(weight)), color=colour, label=name)
         phase.semilogx(frequency_hz, np.unwrap(np.angle(weight)) * DEG_PER_RAD, color=colour)
-    crossover = crossover_hz(eta, period_s)
-    for panel in axes:
-        panel.axvline(crossover, color=GREY, ls="--")
-    magnitude.annotate(f" {crossover:.3g} Hz", (crossover, -38), color=INK)
+    stronger = np.abs(rate) > np.abs(force)
+    if stronger.any():
+        crossover = frequency_hz[int(np.argmax(stronger))]
+        for panel in axes:
+            panel.axvline(crossover, color=GREY, ls="--")
+        magnitude.annotate(f" {crossover:.3g} Hz", (crossover, -38), color=INK)
     magnitude.set(ylabel="weight, dB", ylim=(-42, 6))
     magnitude.legend(loc="lower left")
     phase.set(xlabel="frequency, Hz", ylabel="phase, deg")
     return svg_text(figure, mpl)
-
-
-def weights(
-    frequency_hz: Vector, eta: float, period_s: float, integral_gain_per_s2: float
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return what the filter makes of the tilt from force and of the integrated rate.
-
-    Both are of shape ``(N,)`` and add up to one at every frequency. With q the delay of a sample
-    and k = ki dt^2 they follow from the equations of the filter without a gate.
-    """
-    delay = np.exp(-2j * np.pi * frequency_hz * period_s)
-    learnt = delay * integral_gain_per_s2 * period_s**2 / (1.0 - delay)
-    denominator = 1.0 - delay * eta + learnt
-    rate = eta * (1.0 - delay) / denominator
-    force = eta * (delay * (1.0 - eta) + learnt) / denominator + 1.0 - eta
-    return force, rate
 
 
 def cost_profiles(profiles: Sequence[Profile], intervals: Sequence[Interval]) -> str:

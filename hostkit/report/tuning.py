@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 from hostkit.design_file import digest
-from hostkit.filters.complementary import BY_NAME, crossover_hz, tau_from_eta
+from hostkit.filters import FILTERS
 from hostkit.records import AXES, FilterDesign
 from hostkit.report import figures
 from hostkit.report.page import Fact, Page, Plot, Table, write_page
@@ -37,17 +37,13 @@ def write_tuning_report(result: TuningResult, path: Path) -> None:
 
 
 def tuning_facts(result: TuningResult) -> tuple[Fact, ...]:
-    """Return eta with what it means, and the error on the training recordings."""
+    """Return the filter's own facts, and the error on the training recordings."""
     design = result.design
-    eta, period_s = design.parameter("eta"), design.period_s
     what = "inclination" if design.axes == "both" else design.axes
     return (
-        Fact(label="eta", value=f"{eta:.5f}", note=f"at {design.rate_hz:g} Hz"),
-        Fact(label="time constant", value=f"{tau_from_eta(eta, period_s):.3g} s", note="tau"),
-        Fact(
-            label="crossover",
-            value=f"{crossover_hz(eta, period_s):.3g} Hz",
-            note="below it force decides, above it rate",
+        *(
+            Fact(label=fact.label, value=f"{fact.value:.5g} {fact.unit}".rstrip(), note=fact.note)
+            for fact in FILTERS[design.filter].facts(design)
         ),
         Fact(
             label=f"RMSE of {what}",
@@ -139,16 +135,9 @@ def tuning_plots(result: TuningResult) -> tuple[Plot, ...]:
         Plot(
             title="Frequency response",
             caption="How the filter weighs its two sensors; the dashed line is the crossover.",
-            svg=figures.frequency_response(
-                design.parameter("eta"), design.period_s, _integral_gain(design)
-            ),
+            svg=figures.frequency_response(design),
         ),
     )
-
-
-def _integral_gain(design: FilterDesign) -> float:
-    key = BY_NAME["integral_gain"].key(None)
-    return next((p.value for p in design.parameters if p.name == key), 0.0)
 
 
 def score_table(result: TuningResult) -> Table:

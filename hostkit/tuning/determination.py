@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.records import read_only
-from hostkit.tuning.problem import Problem, scored_of
-from hostkit.tuning.space import Dimension
+from hostkit.tuning.dimension import Dimension
+from hostkit.tuning.task import Task
 
 Vector = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ class Profile:
         read_only(self.cost_rad)
 
 
-def profiles(problem: Problem, x: Vector) -> tuple[Profile, ...]:
+def profiles(problem: Task, x: Vector) -> tuple[Profile, ...]:
     """Walk along each parameter from an optimum, over its whole range.
 
     Parameters
@@ -109,7 +109,7 @@ def profiles(problem: Problem, x: Vector) -> tuple[Profile, ...]:
 
 
 def remarks(
-    problem: Problem, x: Vector, least_rad: float, walked: tuple[Profile, ...]
+    problem: Task, x: Vector, least_rad: float, walked: tuple[Profile, ...]
 ) -> tuple[str, ...]:
     """Say in sentences what about an optimum the recordings do not determine.
 
@@ -123,7 +123,7 @@ def remarks(
     return (*_at_edge(problem, x), *_flat(least_rad, walked), *_alike(problem, x))
 
 
-def _at_edge(problem: Problem, x: Vector) -> tuple[str, ...]:
+def _at_edge(problem: Task, x: Vector) -> tuple[str, ...]:
     found = []
     for dimension, here in zip(problem.space.dimensions, x, strict=True):
         width = dimension.upper - dimension.lower
@@ -150,7 +150,7 @@ def _flat(least_rad: float, walked: tuple[Profile, ...]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _alike(problem: Problem, x: Vector) -> tuple[str, ...]:
+def _alike(problem: Task, x: Vector) -> tuple[str, ...]:
     """Name the pairs whose estimates are nearly one: the correlation of the Gauss-Newton step."""
     dimensions = problem.space.dimensions
     inverse = np.linalg.pinv(_information(problem, x), rcond=1e-12, hermitian=True)
@@ -167,7 +167,7 @@ def _alike(problem: Problem, x: Vector) -> tuple[str, ...]:
     )
 
 
-def _information(problem: Problem, x: Vector) -> Vector:
+def _information(problem: Task, x: Vector) -> Vector:
     """Return the mean of J^T J, with J how the error follows each parameter, shape ``(D, D)``.
 
     Parameters are in shares of their range.
@@ -177,11 +177,11 @@ def _information(problem: Problem, x: Vector) -> Vector:
     centre = np.clip(x, lower + step, upper - step)
     points = [centre + sign * row for row in np.diag(step) for sign in (1.0, -1.0)]
     total = np.zeros((len(x), len(x)))
-    for recording in range(len(problem.streams)):
+    for recording in range(len(problem.lengths)):
         product, scored = np.zeros_like(total), 0
         for runs in zip(*(problem.errors(point, recording) for point in points), strict=True):
-            mask = scored_of(runs[0][0])
-            error = np.array([np.concatenate([e[mask] for e in errors]) for _, errors in runs])
+            mask = runs[0][0]
+            error = np.array([errors[:, mask].ravel() for _, errors in runs])
             slope = (error[0::2] - error[1::2]) / (2.0 * STEP)
             product += slope @ slope.T
             scored += int(mask.sum())

@@ -6,7 +6,7 @@ from typing import Literal
 from hostkit.errors import HostkitError
 from hostkit.mounting import Mounting
 from hostkit.records import AxisChoice, Objective, SensorConfig, TiltMethod
-from hostkit.tuning.space import FixedParameter, FreeName, SearchRange
+from hostkit.tuning.dimension import FixedParameter, FreeName, SearchRange
 
 Precision = Literal["float64", "float32"]
 PRECISIONS: tuple[Precision, ...] = ("float64", "float32")
@@ -25,7 +25,8 @@ class TuningOptions:
     Attributes
     ----------
     free, fixed, ranges
-        Parameters to search, parameters that are set, and ranges in place of the usual ones.
+        Parameters to search (empty: those that the filter is tuned by), parameters that are set,
+        and ranges in place of the usual ones.
     optimiser
         Name of a rule, or ``auto``: grid and Brent for one parameter, QPSO for several.
     particles, iterations
@@ -44,11 +45,12 @@ class TuningOptions:
         Size of the bootstrap that gives the intervals; 0 for none.
     """
 
+    filter: str = "complementary"
     axes: AxisChoice = "both"
     mounting: Mounting = field(default_factory=Mounting)
     tilt: TiltMethod = "atan2"
     objective: Objective = "rmse"
-    free: tuple[FreeName, ...] = ("tau",)
+    free: tuple[FreeName, ...] = ()
     fixed: tuple[FixedParameter, ...] = ()
     ranges: tuple[SearchRange, ...] = ()
     optimiser: str = AUTO

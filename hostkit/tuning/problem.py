@@ -45,6 +45,20 @@ class Problem:
     dtype: DTypeLike = np.float64
     kernel: Kernel = field(default_factory=kernel)
 
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Return the samples of each recording."""
+        return tuple(len(streams[0]) for streams in self.streams)
+
+    @property
+    def is_dear(self) -> bool:
+        """Return whether points are too dear for a search of its own for every fold."""
+        return False
+
+    def with_jobs(self, jobs: int) -> "Problem":
+        """Return the same with other threads."""
+        return replace(self, jobs=jobs)
+
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points, rad: the mean over recordings and axes of RMSE or MAE.
 
@@ -129,7 +143,7 @@ class Problem:
             Samples that count; the filter runs on through the others.
         """
         squares, scored, at = 0.0, 0, 0
-        for parts, error in self.errors(x, recording):
+        for parts, error in self._traces(x, recording):
             mask = scored_of(parts, begin - at, None if end is None else end - at)
             deviation = _deviation(parts, error)[mask]
             squares += float(np.square(deviation).sum())
@@ -137,7 +151,19 @@ class Problem:
             at += len(parts[0])
         return math.sqrt(squares / scored) if scored else math.nan
 
-    def errors(
+    def errors(self, x: Vector, recording: int) -> Iterator[tuple[NDArray[np.bool_], Vector]]:
+        """Run one point over one recording, part by part.
+
+        Yields
+        ------
+        scored, errors
+            Which samples are scored on all axes, shape ``(N,)``, and the error of each axis, rad,
+            shape ``(A, N)``.
+        """
+        for parts, errors in self._traces(x, recording):
+            yield scored_of(parts), np.stack(errors)
+
+    def _traces(
         self, x: Vector, recording: int
     ) -> Iterator[tuple[tuple[ErrorStream, ...], tuple[Vector, ...]]]:
         """Run one point over one recording, part by part.

@@ -2,16 +2,17 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.optimisers import OPTIMISERS
+from hostkit.tuning.archive import ArchivedTask
 from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.options import TuningOptions
-from hostkit.tuning.problem import Problem
+from hostkit.tuning.task import Task
 
 Vector = NDArray[np.float64]
 
@@ -54,12 +55,12 @@ class HeldOut:
     each_rad: tuple[float, ...]
 
 
-def cross_validate(problem: Problem, options: TuningOptions) -> HeldOut:
+def cross_validate(problem: Task, options: TuningOptions) -> HeldOut:
     """Leave recordings out in turn, tune on the rest, and score on what was left out.
 
     With one recording its parts are left out in turn; the filter runs on through them.
     """
-    recordings = len(problem.streams)
+    recordings = len(problem.lengths)
     if recordings > 1:
         folds = min(recordings, MOST_FOLDS)
         fold_of = np.arange(recordings) % folds
@@ -69,7 +70,7 @@ def cross_validate(problem: Problem, options: TuningOptions) -> HeldOut:
         return _held_out("recordings", folds, each)
     weights = 1.0 - np.eye(SINGLE_FOLDS)[:, None, :]
     x = retune(problem, weights, options)
-    cuts = edges(len(problem.streams[0][0]), SINGLE_FOLDS)
+    cuts = edges(problem.lengths[0], SINGLE_FOLDS)
     each = [problem.rms_rad(x[i], 0, cuts[i], cuts[i + 1]) for i in range(SINGLE_FOLDS)]
     return _held_out("parts", SINGLE_FOLDS, each)
 
@@ -80,7 +81,7 @@ def _held_out(unit: Literal["recordings", "parts"], folds: int, each: list[float
     return HeldOut(unit=unit, folds=folds, rms_rad=mean, each_rad=tuple(each))
 
 
-def bootstrap(problem: Problem, options: TuningOptions) -> Vector:
+def bootstrap(problem: Task, options: TuningOptions) -> Vector:
     """Tune again on recordings, or blocks of few recordings, drawn with replacement.
 
     Blocks of one recording follow each other, so intervals from few recordings are rather too
@@ -96,7 +97,7 @@ def bootstrap(problem: Problem, options: TuningOptions) -> Vector:
     B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7(1), 1979,
     pp. 1-26.
     """
-    recordings = len(problem.streams)
+    recordings = len(problem.lengths)
     blocks = 1 if recordings >= MANY_RECORDINGS else -(-LEAST_UNITS // recordings)
     units = recordings * blocks
     rng = np.random.default_rng(options.seed)
@@ -105,7 +106,7 @@ def bootstrap(problem: Problem, options: TuningOptions) -> Vector:
     return retune(problem, weights, options)
 
 
-def retune(problem: Problem, weights: Vector, options: TuningOptions) -> Vector:
+def retune(problem: Task, weights: Vector, options: TuningOptions) -> Vector:
     """Tune once for each set of weights.
 
     Parameters
@@ -120,12 +121,14 @@ def retune(problem: Problem, weights: Vector, options: TuningOptions) -> Vector:
     """
     space, blocks = problem.space, weights.shape[2]
     counts = problem.block_counts(blocks)
+    if isinstance(problem, ArchivedTask):
+        return _best_visited(problem, weights, counts)
     if len(space.dimensions) == 1:
         grid = np.linspace(space.lower[0], space.upper[0], GRID_POINTS)
         sums = problem.block_sums(grid[:, None], blocks)
         costs = [weighted_cost(problem, sums, counts, one) for one in weights]
         return np.array([_between(grid, cost) for cost in costs]).reshape(len(weights), 1)
-    alone = replace(problem, jobs=1)
+    alone = problem.with_jobs(1)
 
     def swarm(one: Vector) -> Vector:
         if not _used(counts, one).any():
@@ -152,13 +155,25 @@ def retune(problem: Problem, weights: Vector, options: TuningOptions) -> Vector:
     return np.array(found).reshape(len(weights), len(space.dimensions))
 
 
-def weighted_cost(problem: Problem, sums: Vector, counts: Vector, weights: Vector) -> Vector:
+def _best_visited(problem: ArchivedTask, weights: Vector, counts: Vector) -> Vector:
+    """Return the best of the points that a search visited, for each set of weights."""
+    visited = problem.visited()
+    sums = visited.in_blocks(weights.shape[2])
+    found = np.full((len(weights), visited.points.shape[1]), np.nan)
+    for i, one in enumerate(weights):
+        cost = weighted_cost(problem, sums, counts, one)
+        if np.isfinite(cost).any():
+            found[i] = visited.points[int(np.nanargmin(cost))]
+    return found
+
+
+def weighted_cost(problem: Task, sums: Vector, counts: Vector, weights: Vector) -> Vector:
     """Return the cost of points where blocks have weights.
 
     Parameters
     ----------
     sums, counts
-        From `Problem.block_sums` and `Problem.block_counts`: shapes ``(R, A, B, P)`` and
+        From `Task.block_sums` and `Task.block_counts`: shapes ``(R, A, B, P)`` and
         ``(R, A, B)``.
     weights
         Shape ``(R, B)``.

@@ -13,6 +13,7 @@ from hostkit.tuning.kernel import ErrorStream, NativeKernel
 from hostkit.tuning.kernel.native import LineTask
 from hostkit.tuning.options import AUTO, TuningOptions
 from hostkit.tuning.problem import Problem
+from hostkit.tuning.task import Task
 
 Vector = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def choose_optimiser(name: str, parameters: int) -> str:
     return name
 
 
-def search(problem: Problem, options: TuningOptions, optimiser: str) -> SwarmResult:
+def search(problem: Task, options: TuningOptions, optimiser: str) -> SwarmResult:
     """Find the least cost, from several seeds if so wished.
 
     Returns
@@ -51,9 +52,11 @@ def search(problem: Problem, options: TuningOptions, optimiser: str) -> SwarmRes
     HostkitError
         If the cost is finite nowhere.
     """
-    alone = replace(problem, jobs=1) if options.restarts > 1 else problem
+    alone = problem.with_jobs(1) if options.restarts > 1 else problem
     planned = options.restarts * options.particles * (options.iterations + 1)
-    tables = None if optimiser == ONE_PARAMETER else tabulated(problem, planned)
+    tables = None
+    if isinstance(problem, Problem) and optimiser != ONE_PARAMETER:
+        tables = tabulated(problem, planned)
 
     def run(restart: int) -> SwarmResult:
         seed = (options.seed,) if restart == 0 else (options.seed, restart)
@@ -68,13 +71,13 @@ def search(problem: Problem, options: TuningOptions, optimiser: str) -> SwarmRes
 
 
 def _run(
-    problem: Problem,
+    problem: Task,
     tables: TabulatedProblem | None,
     options: TuningOptions,
     optimiser: str,
     seed: tuple[int, ...],
 ) -> SwarmResult:
-    if tables is None:
+    if tables is None and isinstance(problem, Problem):
         compiled = _compiled(problem, options, optimiser, seed)
         if compiled is not None:
             return compiled

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,22 +10,18 @@ from numpy.typing import NDArray
 from hostkit.errors import DesignError
 from hostkit.filters.complementary import BY_NAME, eta_from_tau, parameter, parameters
 from hostkit.records import AXES, Axis, AxisChoice, Parameter
+from hostkit.tuning.dimension import (
+    Dimension,
+    FixedParameter,
+    FreeName,
+    SearchRange,
+    check_fixed,
+    check_range,
+)
 from hostkit.tuning.kernel import Candidates
 from hostkit.units import RAD_PER_DEG
 
 Vector = NDArray[np.float64]
-FreeName = Literal["tau", "gyro_bias", "gyro_scale", "tilt_offset", "gate", "integral_gain"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SearchRange:
-    """Where one kind of parameter is looked for, in the unit of a design (tau in s)."""
-
-    name: FreeName
-    lowest: float
-    highest: float
-    is_log: bool
-
 
 RANGES: Final[tuple[SearchRange, ...]] = (
     SearchRange(name="tau", lowest=0.02, highest=100.0, is_log=True),
@@ -43,42 +39,6 @@ RANGES: Final[tuple[SearchRange, ...]] = (
 would learn a bias within three seconds, that is, follow the motion."""
 
 RANGE_BY_NAME: Final[dict[FreeName, SearchRange]] = {r.name: r for r in RANGES}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixedParameter:
-    """A parameter that the user sets: of one axis, or of all (None). tau is in s."""
-
-    name: FreeName
-    value: float
-    axis: Axis | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Dimension:
-    """One searched number. `lower` and `upper` are logarithms where `is_log`."""
-
-    name: FreeName
-    axis: Axis | None
-    lower: float
-    upper: float
-    is_log: bool
-
-    @property
-    def label(self) -> str:
-        """Name with its axis, as in a message."""
-        return self.name.replace("_", "-") + (f" of {self.axis}" if self.axis else "")
-
-    def value(self, x: float) -> float:
-        """Return the parameter of a coordinate."""
-        return math.exp(x) if self.is_log else x
-
-    def shown(self, value: float) -> tuple[float, str]:
-        """Return a value of a design as on the screen, with its unit there."""
-        if self.name == "tau":
-            return value, "s"
-        kind = BY_NAME[self.name]
-        return value * kind.shown_per_unit, kind.shown_unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,19 +158,22 @@ def search_space(
 
 
 def _dimensions(search: SearchRange, axes: tuple[Axis, ...]) -> list[Dimension]:
+    check_range(search, *_limits(search.name))
     low, high = search.lowest, search.highest
-    floor, ceiling = _limits(search.name)
-    if not (math.isfinite(low) and math.isfinite(high) and floor <= low < high <= ceiling):
-        raise DesignError(
-            f"range of {search.name}: {low:g} to {high:g}; the lower end must be below the upper "
-            f"one, both within [{floor:g}, {ceiling:g}]"
-        )
     if search.is_log:
         low, high = math.log(low), math.log(high)
-    per_axis = search.name != "tau" and BY_NAME[search.name].per_axis
+    kind = None if search.name == "tau" else BY_NAME[search.name]
     return [
-        Dimension(name=search.name, axis=axis, lower=low, upper=high, is_log=search.is_log)
-        for axis in (axes if per_axis else (None,))
+        Dimension(
+            name=search.name,
+            axis=axis,
+            lower=low,
+            upper=high,
+            is_log=search.is_log,
+            shown_unit="s" if kind is None else kind.shown_unit,
+            shown_per_unit=1.0 if kind is None else kind.shown_per_unit,
+        )
+        for axis in (axes if kind is not None and kind.per_axis else (None,))
     ]
 
 
@@ -224,11 +187,7 @@ def _check(
     axes: AxisChoice, names: tuple[FreeName, ...], fixed: tuple[FixedParameter, ...]
 ) -> None:
     for one in fixed:
-        if one.name in names:
-            raise DesignError(f"{one.name} is to be tuned and fixed at {one.value:g}; choose one")
-        low, high = _limits(one.name)
-        if not (math.isfinite(one.value) and low <= one.value <= high):
-            raise DesignError(f"{one.name} = {one.value:g} is outside [{low:g}, {high:g}]")
+        check_fixed(one, names, *_limits(one.name))
         if one.axis is not None and one.axis not in AXES[axes]:
             raise DesignError(f"{one.name} is fixed for {one.axis}, which the design has not")
     if not names:

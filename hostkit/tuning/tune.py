@@ -14,21 +14,19 @@ from hostkit.errors import RecordingError
 from hostkit.optimisers import SwarmResult
 from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import FilterDesign, RecordingDigest, TuningRecord
+from hostkit.tuning.archive import archived
 from hostkit.tuning.determination import Interval, Profile, intervals, profiles, remarks
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
-from hostkit.tuning.kernel import StreamSource
-from hostkit.tuning.objective import Layout, prepare
 from hostkit.tuning.options import TuningOptions
-from hostkit.tuning.problem import Problem
-from hostkit.tuning.retuning import HeldOut, bootstrap, cross_validate
+from hostkit.tuning.retuning import LEAST_UNITS, HeldOut, bootstrap, cross_validate
 from hostkit.tuning.search import choose_optimiser, search
 from hostkit.tuning.sensor_choice import sensor_config
-from hostkit.tuning.space import search_space
-from hostkit.tuning.spool import spool
+from hostkit.tuning.task import Task
+from hostkit.tuning.tuner import AnyRecording
+from hostkit.tuning.tuners import TUNERS
 from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]
-AnyRecording = Recording | LargeRecording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +58,7 @@ class TuningResult:
 
 
 def tune(recordings: tuple[AnyRecording, ...], options: TuningOptions) -> TuningResult:
-    """Tune the complementary filter on recordings that have a reference.
+    """Tune a filter on recordings that have a reference.
 
     Raises
     ------
@@ -70,18 +68,20 @@ def tune(recordings: tuple[AnyRecording, ...], options: TuningOptions) -> Tuning
         If an option is not possible, or the cost is finite nowhere.
     """
     with tempfile.TemporaryDirectory(prefix="hostkit-") as folder:
-        problem = tuning_problem(recordings, options, Path(folder))
+        problem = tuning_task(recordings, options, Path(folder))
+        if problem.is_dear:
+            problem = archived(problem, LEAST_UNITS)
         return _tune(problem, recordings, options)
 
 
 def _tune(
-    problem: Problem, recordings: tuple[AnyRecording, ...], options: TuningOptions
+    problem: Task, recordings: tuple[AnyRecording, ...], options: TuningOptions
 ) -> TuningResult:
     rate_hz = recordings[0].rate_hz
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
     swarm = search(problem, options, optimiser)
     design = FilterDesign(
-        filter="complementary",
+        filter=options.filter,
         axes=options.axes,
         tilt=options.tilt,
         mounting=options.mounting,
@@ -107,9 +107,7 @@ def _tune(
     )
 
 
-def tuning_problem(
-    recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path
-) -> Problem:
+def tuning_task(recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path) -> Task:
     """Lay recordings out for the search.
 
     Parameters
@@ -124,33 +122,8 @@ def tuning_problem(
     DesignError
         If the free and fixed parameters do not go together.
     """
-    period_s = 1.0 / _common_rate(recordings)
-    space = search_space(options.axes, period_s, options.free, options.fixed, options.ranges)
-    layout = Layout(
-        axes=options.axes,
-        tilt=options.tilt,
-        mounting=options.mounting,
-        period_s=period_s,
-        full=not space.plain,
-        dtype=np.dtype(options.precision),
-    )
-    streams = tuple(
-        _streams(recording, layout, folder / str(i)) for i, recording in enumerate(recordings)
-    )
-    return Problem(
-        space=space,
-        streams=streams,
-        objective=options.objective,
-        jobs=options.jobs,
-        dtype=np.dtype(options.precision),
-    )
-
-
-def _streams(recording: AnyRecording, layout: Layout, folder: Path) -> tuple[StreamSource, ...]:
-    if isinstance(recording, LargeRecording):
-        folder.mkdir()
-        return spool(recording, replace(layout, dtype=np.float32), folder)
-    return prepare(recording, layout)
+    _common_rate(recordings)
+    return TUNERS[options.filter].task(recordings, options, folder)
 
 
 def _in_memory(recording: AnyRecording) -> Recording:
@@ -160,7 +133,7 @@ def _in_memory(recording: AnyRecording) -> Recording:
 
 def _training_rms_rad(
     design: FilterDesign,
-    problem: Problem,
+    problem: Task,
     x: Vector,
     recordings: tuple[AnyRecording, ...],
     evaluations: tuple[Evaluation, ...],

@@ -11,8 +11,8 @@ from hostkit.cli.main import run
 from hostkit.errors import RecordingError
 from hostkit.recordings import LargeRecording, load, open_large, save
 from hostkit.tuning import TuningOptions, tune
+from hostkit.tuning.complementary import tuning_problem
 from hostkit.tuning.kernel import PortableKernel, kernel
-from hostkit.tuning.tune import tuning_problem
 
 
 @pytest.fixture

@@ -19,6 +19,7 @@ from hostkit.filters.complementary.parameters import (
     settings,
     tau_from_eta,
 )
+from hostkit.filters.complementary.response import response
 from hostkit.filters.complementary.run_time import (
     RUN_TIME,
     RunTimeParameter,
@@ -63,6 +64,7 @@ __all__ = [
     "measured_tilt_raw",
     "parameter",
     "parameters",
+    "response",
     "run_float",
     "run_integer",
     "setting_words",
@@ -87,6 +89,7 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
         with_told=with_told_by_name,
     ),
     facts=facts,
+    response=response,
     context=filter_context,
     setting_words=setting_words,
 )

@@ -15,7 +15,19 @@ def facts(design: FilterDesign) -> tuple[Fact, ...]:
     """
     eta, period_s = design.parameter("eta"), design.period_s
     return (
-        Fact(name="eta", label="weight of the rate", value=eta),
-        Fact(name="tau_s", label="time constant", value=tau_from_eta(eta, period_s), unit="s"),
-        Fact(name="crossover_hz", label="crossover", value=crossover_hz(eta, period_s), unit="Hz"),
+        Fact(name="eta", label="eta", value=eta, note="weight of the integrated rate"),
+        Fact(
+            name="tau_s",
+            label="tau",
+            value=tau_from_eta(eta, period_s),
+            unit="s",
+            note="time constant",
+        ),
+        Fact(
+            name="crossover_hz",
+            label="crossover",
+            value=crossover_hz(eta, period_s),
+            unit="Hz",
+            note="below it force decides, above it rate",
+        ),
     )

@@ -1,0 +1,1 @@
+"""The bounded-velocity observer of orientation."""

@@ -1,0 +1,89 @@
+"""The tuning of the complementary filter: its parameters, and its problem on recordings."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from hostkit.filters.complementary import BY_NAME
+from hostkit.recordings import LargeRecording, Recording
+from hostkit.records import AXES
+from hostkit.tuning.dimension import FreeName
+from hostkit.tuning.kernel import StreamSource
+from hostkit.tuning.objective import Layout, prepare
+from hostkit.tuning.options import TuningOptions
+from hostkit.tuning.problem import Problem
+from hostkit.tuning.space import RANGES, search_space
+from hostkit.tuning.spool import spool
+from hostkit.tuning.tuner import AnyRecording, Tunable, Tuner
+
+FREE = ("tau",)
+
+
+def tuning_problem(
+    recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path
+) -> Problem:
+    """Lay recordings of one rate out for the search.
+
+    Parameters
+    ----------
+    folder
+        Where recordings that do not fit the memory are laid out.
+
+    Raises
+    ------
+    RecordingError
+        If a recording has no reference or no valid sample.
+    DesignError
+        If the free and fixed parameters do not go together.
+    """
+    period_s = 1.0 / recordings[0].rate_hz
+    free = options.free or FREE
+    space = search_space(options.axes, period_s, free, options.fixed, options.ranges)
+    layout = Layout(
+        axes=options.axes,
+        tilt=options.tilt,
+        mounting=options.mounting,
+        period_s=period_s,
+        full=not space.plain,
+        dtype=np.dtype(options.precision),
+    )
+    streams = tuple(
+        _streams(recording, layout, folder / str(i)) for i, recording in enumerate(recordings)
+    )
+    return Problem(
+        space=space,
+        streams=streams,
+        objective=options.objective,
+        jobs=options.jobs,
+        dtype=np.dtype(options.precision),
+    )
+
+
+def _streams(recording: AnyRecording, layout: Layout, folder: Path) -> tuple[StreamSource, ...]:
+    if isinstance(recording, LargeRecording):
+        folder.mkdir()
+        return spool(recording, replace(layout, dtype=np.float32), folder)
+    assert isinstance(recording, Recording)
+    return prepare(recording, layout)
+
+
+def _tunable(name: FreeName) -> Tunable:
+    search = next(r for r in RANGES if r.name == name)
+    if name == "tau":
+        return Tunable(search=search, shown_unit="s")
+    kind = BY_NAME[name]
+    return Tunable(
+        search=search,
+        shown_unit=kind.shown_unit,
+        shown_per_unit=kind.shown_per_unit,
+        axes=AXES["both"] if kind.per_axis else (),
+    )
+
+
+COMPLEMENTARY_TUNER = Tuner(
+    name="complementary",
+    tunables=tuple(_tunable(r.name) for r in RANGES),
+    free=FREE,
+    task=tuning_problem,
+)

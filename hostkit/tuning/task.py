@@ -1,0 +1,85 @@
+"""What a search needs of a filter's problem, whichever filter it is."""
+
+from collections.abc import Iterator
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.records import Objective, Parameter
+from hostkit.tuning.dimension import Dimension
+
+Vector = NDArray[np.float64]
+
+
+class Space(Protocol):
+    """The box of a search."""
+
+    @property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """Return what is searched."""
+
+    @property
+    def lower(self) -> Vector:
+        """Lower corner of the box, shape ``(D,)``."""
+
+    @property
+    def upper(self) -> Vector:
+        """Upper corner of the box, shape ``(D,)``."""
+
+    def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
+        """Return a point, shape ``(D,)``, as the parameters of a design."""
+
+
+class Task(Protocol):
+    """The cost of points over recordings: :class:`hostkit.tuning.problem.Problem` is one.
+
+    Errors are of Q quantities: the angles of the axes, or the inclination alone.
+    """
+
+    @property
+    def space(self) -> Space:
+        """Return the box of the search."""
+
+    @property
+    def objective(self) -> Objective:
+        """Return whether squares or magnitudes count."""
+
+    @property
+    def jobs(self) -> int:
+        """Return how many threads work over recordings."""
+
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Return the samples of each recording."""
+
+    @property
+    def is_dear(self) -> bool:
+        """Return whether points are too dear for a search of its own for every fold."""
+
+    def with_jobs(self, jobs: int) -> "Task":
+        """Return the same with other threads."""
+
+    def cost(self, points: Vector) -> Vector:
+        """Return the cost of points of shape ``(P, D)``, rad: shape ``(P,)``."""
+
+    def block_sums(self, points: Vector, blocks: int) -> Vector:
+        """Return sums of squares or magnitudes in blocks, shape ``(R, Q, blocks, P)``."""
+
+    def block_counts(self, blocks: int) -> Vector:
+        """Return how many samples are scored in each block, shape ``(R, Q, blocks)``."""
+
+    def metric(self, sums: Vector, counts: Vector) -> Vector:
+        """Return the RMSE or MAE of sums over so many samples."""
+
+    def rms_rad(self, x: Vector, recording: int, begin: int = 0, end: int | None = None) -> float:
+        """Return the RMSE of one point on one recording: its axis, or the inclination."""
+
+    def errors(self, x: Vector, recording: int) -> Iterator[tuple[NDArray[np.bool_], Vector]]:
+        """Run one point over one recording, part by part.
+
+        Yields
+        ------
+        scored, errors
+            Which samples are scored, shape ``(N,)``, and the errors, rad, shape ``(Q, N)``.
+        """
