@@ -143,7 +143,7 @@ def test_a_terminal_has_a_counter_and_the_failures(capsys: pytest.CaptureFixture
 def test_remarks_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
     progress = Progress(clock=time.monotonic, on_terminal=False)
     progress.show(Step(result=result("d"), done=1, total=1, remarks=("look",), seconds=0.1))
-    assert capsys.readouterr().err == "1/1 d: eta 0.500000; look (0.10 s)\n"
+    assert capsys.readouterr().err == "1/1 d: eta 0.5; look (0.10 s)\n"
 
 
 @contextmanager
