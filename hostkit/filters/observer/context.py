@@ -5,14 +5,8 @@ from dataclasses import dataclass
 from hostkit.filters.factor import FactorContext, factor
 from hostkit.filters.observer.float_context import RealContext, real_constants
 from hostkit.filters.observer.integer_angles import LEAD_LIMIT
-from hostkit.filters.observer.integer_model import (
-    CLIP_GAIN,
-    FIFTH,
-    HALF_PER_G,
-    SIXTH,
-    START_LIMIT,
-    TWENTY_FOURTH,
-)
+from hostkit.filters.observer.integer_geometry import FIFTH, HALF_PER_G, SIXTH, TWENTY_FOURTH
+from hostkit.filters.observer.integer_model import CLIP_GAIN, START_LIMIT
 from hostkit.filters.observer.limits import FIRST_ROUNDS
 from hostkit.filters.observer.parameters import BY_NAME, SENSOR_AXES
 from hostkit.filters.observer.run_time import RUN_TIME, RunTimeParameter, limits, per_unit, words
