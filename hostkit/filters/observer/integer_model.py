@@ -232,11 +232,14 @@ def _follow_rate(spec: ObserverSpec, state: _State, turn: list[int]) -> None:
 def _follow_correction(
     spec: ObserverSpec, state: _State, rows: tuple[Row, Row], correction: tuple[int, int]
 ) -> None:
-    """Let the bias follow the correction, turned into sensor axes."""
-    x, y = (part * spec.gains.kb_raw >> 32 for part in correction)
+    """Let the bias follow the correction, turned into sensor axes.
+
+    One product is taken off and one is added, so that what they lose by rounding does not add up.
+    """
+    x, y = correction[0] * spec.gains.kb_raw >> 32, -correction[1] * spec.gains.kb_raw >> 32
     x_row, y_row = rows
     for i in XYZ:
-        change = (x_row[i] * x >> 32) + (y_row[i] * y >> 32)
+        change = (x_row[i] * x >> 32) - (y_row[i] * y >> 32)
         state.bias[i] = clamped(state.bias[i] - change, spec.bias_limit)
 
 
