@@ -1,7 +1,7 @@
 """The frozen records that flow from stage to stage."""
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 
 from hostkit.errors import DesignError
 from hostkit.mounting import Mounting
+from hostkit.provenance import OBJECTIVES as OBJECTIVES
+from hostkit.provenance import CalibrationRecord
+from hostkit.provenance import Objective as Objective
+from hostkit.provenance import RecordingDigest as RecordingDigest
+from hostkit.provenance import TuningRecord as TuningRecord
 
 Axis = Literal["roll", "pitch"]
 AxisChoice = Literal["roll", "pitch", "both"]
 TiltMethod = Literal["atan2", "arcsin"]
-Objective = Literal["rmse", "mae"]
 
 AXES: Final[dict[AxisChoice, tuple[Axis, ...]]] = {
     "roll": ("roll",),
@@ -21,7 +25,6 @@ AXES: Final[dict[AxisChoice, tuple[Axis, ...]]] = {
     "both": ("roll", "pitch"),
 }
 TILT_METHODS: Final[tuple[TiltMethod, ...]] = ("atan2", "arcsin")
-OBJECTIVES: Final[tuple[Objective, ...]] = ("rmse", "mae")
 
 RATE_LIMITS_HZ: Final = (0.1, 8000.0)
 """Slowest and fastest sample rate of a design; 8 kHz is the MPU-6050's own gyroscope rate."""
@@ -49,35 +52,6 @@ class Parameter:
     name: str
     value: float
     unit: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingDigest:
-    """What a design remembers of a recording it was tuned on."""
-
-    name: str
-    sha256: str
-    samples: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TuningRecord:
-    """How a design was found, so that it can be found again.
-
-    `rmse_deg` is the figure on the recordings named here, that is, a training figure;
-    `held_out_rmse_deg` is the one on recordings while they were left out.
-    """
-
-    objective: Objective
-    optimiser: str
-    seed: int
-    particles: int
-    iterations: int
-    evaluations: int
-    rmse_deg: float
-    recordings: tuple[RecordingDigest, ...]
-    versions: tuple[tuple[str, str], ...]
-    held_out_rmse_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +107,7 @@ class FilterDesign:
     parameters: tuple[Parameter, ...]
     tuning: TuningRecord | None = None
     acceptance: Acceptance | None = None
+    calibration: CalibrationRecord | None = None
 
     def __post_init__(self) -> None:
         """Refuse a rate that no sensor has."""
@@ -169,6 +144,25 @@ class GeneratedFile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ToldState:
+    """The hidden words that a device told of its state after one sample.
+
+    Attributes
+    ----------
+    sequence
+        Counter of that sample.
+    words_raw
+        The words, in the order of the spec.
+    behind
+        How many samples of its trace came before it.
+    """
+
+    sequence: int
+    words_raw: tuple[int, ...]
+    behind: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AngleTrace:
     """What a device said, sample by sample.
 
@@ -182,12 +176,16 @@ class AngleTrace:
         Raw counts in sensor axes, shape ``(N, 3)``.
     state_raw
         State of the filter after the sample, shape ``(N, S)``: the angles of the design's axes in
-        half turns, then the hidden words.
+        half turns, then the hidden words; the angles only, shape ``(N, A)``, of a filter that
+        tells its state in messages of their own.
     restarted
         True where the filter loaded the measured tilt instead of stepping, shape ``(N,)``.
     retuned
         True where the device says that a parameter in use is not the design's, shape ``(N,)``;
         None where nothing says so.
+    told
+        States that the device told beside its samples, in the order in which they came; their
+        samples may be others than those of this trace.
     """
 
     sequence: NDArray[np.int64]
@@ -197,6 +195,7 @@ class AngleTrace:
     state_raw: NDArray[np.int64]
     restarted: NDArray[np.bool_]
     retuned: NDArray[np.bool_] | None = None
+    told: tuple[ToldState, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -209,6 +208,26 @@ class AngleTrace:
 
     def __len__(self) -> int:
         return len(self.sequence)
+
+    def part(self, which: slice | NDArray[np.bool_]) -> "AngleTrace":
+        """Return some of the samples: a stretch with what was told in it, or a selection."""
+        if isinstance(which, slice):
+            begin, end, _ = which.indices(len(self))
+            first = 0 if begin == 0 else begin + 1
+            told = [state for state in self.told if first <= state.behind <= end]
+            before = np.maximum(np.arange(len(self) + 1) - begin, 0)
+        else:
+            told, before = list(self.told), np.concatenate(([0], np.cumsum(which)))
+        return AngleTrace(
+            sequence=self.sequence[which],
+            time_us=self.time_us[which],
+            accel_count=self.accel_count[which],
+            gyro_count=self.gyro_count[which],
+            state_raw=self.state_raw[which],
+            restarted=self.restarted[which],
+            retuned=None if self.retuned is None else self.retuned[which],
+            told=tuple(replace(state, behind=int(before[state.behind])) for state in told),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -263,7 +282,12 @@ class ValidationReport:
         from the float model than its tolerance.
     unjudged
         Samples that no model could follow: every so many-th only is sent, or the parameters in
-        use were not known.
+        use or the state of the filter were not known.
+    waiting
+        Those of them that came while only the state was not known: after a gap until the device
+        told it.
+    longest_wait_s
+        The longest time that it was not known.
     stride
         Greatest step of the sample counter that the device kept to on purpose; 1 where it sends
         every sample.
@@ -292,6 +316,8 @@ class ValidationReport:
     late: int = 0
     repeated: int = 0
     unjudged: int = 0
+    waiting: int = 0
+    longest_wait_s: float = 0.0
     stride: int = 1
     tolerance_rad: float | None = None
     untold: tuple[str, ...] = field(default=())

@@ -17,7 +17,7 @@ def parse_free(
     """Read names of parameters, separated by commas, or ``all``; nothing leaves it open."""
     tuner = _tuner(ctx)
     if text is None:
-        return tuner.free
+        return ()
     if text == ALL:
         return tuple(t.name for t in tuner.tunables)
     return tuple(_known(tuner, part.strip()).name for part in text.split(","))

@@ -1,6 +1,8 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.calibration import calibrated
 from hostkit.filters.complementary.context import filter_context
+from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
 from hostkit.filters.complementary.gate import force_gate
@@ -50,6 +52,7 @@ __all__ = [
     "ParameterKind",
     "RunTimeParameter",
     "Settings",
+    "calibrated",
     "crossover_hz",
     "device_parameters",
     "eta_from_tau",
@@ -92,4 +95,6 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
+    calibrated=calibrated,
 )

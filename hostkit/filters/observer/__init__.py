@@ -2,6 +2,7 @@
 
 from hostkit.filters.filter import Filter, RunTime
 from hostkit.filters.observer.context import filter_context
+from hostkit.filters.observer.core import CORE
 from hostkit.filters.observer.facts import facts
 from hostkit.filters.observer.float_model import run_float
 from hostkit.filters.observer.integer_model import run_integer, step_integer
@@ -28,6 +29,7 @@ from hostkit.filters.observer.run_time import (
 from hostkit.filters.observer.setting_words import setting_words
 from hostkit.filters.observer.settings import Settings, settings
 from hostkit.filters.observer.spec import ObserverSpec
+from hostkit.filters.sensor_terms import take_sensor_terms
 
 __all__ = [
     "BIAS_LIMIT_RAD_S",
@@ -74,4 +76,6 @@ OBSERVER: Filter[ObserverSpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
+    calibrated=take_sensor_terms,
 )

@@ -32,7 +32,7 @@ Vector = NDArray[np.float64]
 RANGES: Final[tuple[SearchRange, ...]] = (
     SearchRange(name="kt", lowest=3e-3, highest=12.0, is_log=True),
     SearchRange(name="kv", lowest=0.05, highest=60.0, is_log=True),
-    SearchRange(name="kb", lowest=1e-5, highest=0.3, is_log=True),
+    SearchRange(name="kb", lowest=1e-5, highest=0.2, is_log=True),
     SearchRange(name="start", lowest=0.05, highest=10.0, is_log=True),
     SearchRange(name="rest_rate", lowest=3e-3, highest=0.1, is_log=True),
     SearchRange(name="rest_force", lowest=0.05, highest=3.0, is_log=True),
@@ -47,6 +47,19 @@ RANGES: Final[tuple[SearchRange, ...]] = (
 )
 """Where tuned values on public recordings lie, with room around them; rates of decay and gains are
 searched as logarithms."""
+
+USUAL: Final[dict[FreeName, float]] = {
+    "lead": 0.01,
+    "gyro_bias": 1.0 * RAD_PER_DEG,
+    "gyro_scale": 0.03,
+    "accel_offset": 0.25,
+    "accel_scale": 0.03,
+}
+"""How far calibrations are from zero in ordinary sensors, in the unit of a design: scale factors
+within the 3 % of the MPU-6050's data sheet."""
+
+HOLD: Final = 2e-3
+"""Share by which the cost grows where a calibration is that far from zero."""
 
 RANGE_BY_NAME: Final[dict[FreeName, SearchRange]] = {r.name: r for r in RANGES}
 
@@ -68,12 +81,24 @@ class ObserverSpace:
         """Upper corner of the box, shape ``(D,)``."""
         return np.array([d.upper for d in self.dimensions])
 
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors that hold points of shape ``(P, D)`` to what is usual, ``(P,)``.
+
+        The scale of an axis that the recordings do not turn about would be anything else.
+        """
+        factor = np.ones(len(points))
+        for i, dimension in enumerate(self.dimensions):
+            usual = USUAL.get(dimension.name)
+            if usual is not None:
+                factor += HOLD * (points[:, i] / usual) ** 2
+        return factor
+
     def values(self, points: Vector) -> dict[str, Vector]:
         """Return every parameter of points of shape ``(P, D)`` by its name in a design."""
         columns = {p.name: np.full(len(points), p.value) for p in self.held}
         for i, dimension in enumerate(self.dimensions):
             column = np.exp(points[:, i]) if dimension.is_log else points[:, i]
-            columns[_key(dimension.name, dimension.axis)] = column
+            columns[parameter_key(dimension.name, dimension.axis)] = column
         return columns
 
     def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
@@ -113,7 +138,8 @@ def observer_space(
     return ObserverSpace(dimensions=tuple(dimensions), held=_held(free, fixed))
 
 
-def _key(name: FreeName, axis: str | None) -> str:
+def parameter_key(name: FreeName, axis: str | None) -> str:
+    """Return the name in a design of a kind of parameter, of an axis where it has several."""
     kind = BY_NAME[name]
     return next(kind.key(a) for a in SENSOR_AXES if not kind.per_axis or a == axis)
 

@@ -1,10 +1,11 @@
+-- made by hostkit 0.1.0 from design 0099cab74159; do not edit; template sim/hk_filter_tb.vhd.j2
 -- Bench of hk_complementary: plays a vector file and writes what comes out.
 --
 -- VECTOR_FILE: one sample a line, seven 16-bit hex words: channel, accel x y z, gyro x y z. A line
--- that begins with "s " holds new settings, ten 32-bit hex words in the order of hk_settings_t; they
--- are taken over when every sample before them has come out.
+-- that begins with "s " holds new settings, 32-bit hex words in the order of hk_settings_t; they are
+-- taken over when every sample before them has come out.
 -- RESULT_FILE: first line the design digest; then one sample a line: channel as 16-bit hex word,
--- roll, pitch and the biases of both as 32-bit hex words, restarted and saturated as 0 or 1, the
+-- roll, pitch and the hidden words as 32-bit hex words, restarted and saturated as 0 or 1, the
 -- clock at which the sample was taken, and its latency in clocks.
 --
 -- The bench ends by itself: without an error when every sample has come out, with a failure when
@@ -20,19 +21,19 @@ use work.hk_common_pkg.all;
 use work.hk_complementary_pkg.all;
 use work.hk_design_pkg.all;
 
-entity hk_complementary_tb is
+entity hk_filter_tb is
   generic (
     CHANNELS        : positive := channels_c;
-    PIPELINED       : boolean  := pipelined_c;
+    PIPELINED       : boolean  := false;
     VECTOR_FILE     : string   := "vectors.txt";
     RESULT_FILE     : string   := "results.txt";
     RANDOM_STALLS   : boolean  := false;  -- gaps on both sides, unknown inputs in the gaps
     ABANDON_CLOCKS  : natural  := 0;      -- if not 0: reset so long after a first try, then start
     WATCHDOG_CLOCKS : positive := 1000
   );
-end entity hk_complementary_tb;
+end entity hk_filter_tb;
 
-architecture sim of hk_complementary_tb is
+architecture sim of hk_filter_tb is
 
   constant clock_period_c : time := 10 ns;
 
@@ -140,18 +141,18 @@ architecture sim of hk_complementary_tb is
       read_space(text_line);
       read_word(text_line, 8, words_v(i));
     end loop;
-    assert text_line'length = 0 report "a line of settings is longer than ten words"
+    assert text_line'length = 0 report "a line of settings is longer than the settings"
       severity failure;
-    value.blend             := words_v(0)(17 downto 0);
-    value.rate_gain_roll    := words_v(1)(17 downto 0);
-    value.rate_gain_pitch   := words_v(2)(17 downto 0);
-    value.integral_gain     := words_v(3)(17 downto 0);
-    value.tilt_offset_roll  := words_v(4);
-    value.tilt_offset_pitch := words_v(5);
-    value.gyro_bias_roll    := words_v(6);
-    value.gyro_bias_pitch   := words_v(7);
-    value.gate_lowest       := unsigned(words_v(8));
-    value.gate_highest      := unsigned(words_v(9));
+    value.blend             := signed(words_v(0)(17 downto 0));
+    value.rate_gain_roll    := signed(words_v(1)(17 downto 0));
+    value.rate_gain_pitch   := signed(words_v(2)(17 downto 0));
+    value.integral_gain     := signed(words_v(3)(17 downto 0));
+    value.tilt_offset_roll  := signed(words_v(4)(31 downto 0));
+    value.tilt_offset_pitch := signed(words_v(5)(31 downto 0));
+    value.gyro_bias_roll    := signed(words_v(6)(31 downto 0));
+    value.gyro_bias_pitch   := signed(words_v(7)(31 downto 0));
+    value.gate_lowest       := unsigned(words_v(8)(31 downto 0));
+    value.gate_highest      := unsigned(words_v(9)(31 downto 0));
   end procedure read_settings;
 
   procedure write_hex (text_line : inout line; value : in std_logic_vector) is
@@ -200,8 +201,8 @@ begin
       out_channel   => out_channel,
       angle_roll    => state(0),
       angle_pitch   => state(1),
-      bias_roll     => state(2),
-      bias_pitch    => state(3),
+      bias_roll     => state(2 + 0),
+      bias_pitch    => state(2 + 1),
       restarted     => restarted,
       saturated     => saturated,
       design_digest => design_digest
@@ -325,7 +326,7 @@ begin
           write_hex(line_v, std_logic_vector(resize(out_channel, 16)));
           write(line_v, ' ');
           for i in state_t'range loop
-            write_hex(line_v, std_logic_vector(state(i)));
+            write_hex(line_v, std_logic_vector(state_v(i)));
             write(line_v, ' ');
           end loop;
           write_flag(line_v, restarted);
