@@ -86,7 +86,9 @@ def test_bounds_reversed_and_unknown_names_are_wrong_use(tmp_path, refused):
     assert "must be below the upper one" in refused(path, "--range", "tau=5:1", code=2)
     assert "must be below the upper one" in refused(path, "--range", "tau=0:1", code=2)
     assert "'inf' is not a finite number" in refused(path, "--range", "tau=1:inf", code=2)
-    assert "no parameter of the complementary filter; known are: tau" in refused(path, "--free", "tau,magic", code=2)
+    assert "no parameter of the complementary filter; known are: tau" in refused(
+        path, "--free", "tau,magic", code=2
+    )
     assert "gate is one for all axes" in refused(path, "--fix", "gate-roll=0.1", code=2)
     assert "gyro_bias = 0.523599" in refused(path, "--fix", "gyro-bias=30")
     assert "grid-brent takes one parameter, 2 are free" in refused(
