@@ -50,6 +50,11 @@ class Problem:
         """Return the samples of each recording."""
         return tuple(len(streams[0]) for streams in self.streams)
 
+    @property
+    def is_dear(self) -> bool:
+        """Return whether points are too dear for a search of its own for every fold."""
+        return False
+
     def with_jobs(self, jobs: int) -> "Problem":
         """Return the same with other threads."""
         return replace(self, jobs=jobs)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.optimisers import OPTIMISERS
+from hostkit.tuning.archive import ArchivedTask
 from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.task import Task
@@ -120,6 +121,8 @@ def retune(problem: Task, weights: Vector, options: TuningOptions) -> Vector:
     """
     space, blocks = problem.space, weights.shape[2]
     counts = problem.block_counts(blocks)
+    if isinstance(problem, ArchivedTask):
+        return _best_visited(problem, weights, counts)
     if len(space.dimensions) == 1:
         grid = np.linspace(space.lower[0], space.upper[0], GRID_POINTS)
         sums = problem.block_sums(grid[:, None], blocks)
@@ -150,6 +153,18 @@ def retune(problem: Task, weights: Vector, options: TuningOptions) -> Vector:
     with ThreadPoolExecutor(problem.jobs) as pool:
         found = list(pool.map(swarm, weights))
     return np.array(found).reshape(len(weights), len(space.dimensions))
+
+
+def _best_visited(problem: ArchivedTask, weights: Vector, counts: Vector) -> Vector:
+    """Return the best of the points that a search visited, for each set of weights."""
+    visited = problem.visited()
+    sums = visited.in_blocks(weights.shape[2])
+    found = np.full((len(weights), visited.points.shape[1]), np.nan)
+    for i, one in enumerate(weights):
+        cost = weighted_cost(problem, sums, counts, one)
+        if np.isfinite(cost).any():
+            found[i] = visited.points[int(np.nanargmin(cost))]
+    return found
 
 
 def weighted_cost(problem: Task, sums: Vector, counts: Vector, weights: Vector) -> Vector:

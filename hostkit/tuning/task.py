@@ -53,6 +53,10 @@ class Task(Protocol):
     def lengths(self) -> tuple[int, ...]:
         """Return the samples of each recording."""
 
+    @property
+    def is_dear(self) -> bool:
+        """Return whether points are too dear for a search of its own for every fold."""
+
     def with_jobs(self, jobs: int) -> "Task":
         """Return the same with other threads."""
 

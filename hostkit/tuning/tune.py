@@ -14,10 +14,11 @@ from hostkit.errors import RecordingError
 from hostkit.optimisers import SwarmResult
 from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import FilterDesign, RecordingDigest, TuningRecord
+from hostkit.tuning.archive import archived
 from hostkit.tuning.determination import Interval, Profile, intervals, profiles, remarks
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
 from hostkit.tuning.options import TuningOptions
-from hostkit.tuning.retuning import HeldOut, bootstrap, cross_validate
+from hostkit.tuning.retuning import LEAST_UNITS, HeldOut, bootstrap, cross_validate
 from hostkit.tuning.search import choose_optimiser, search
 from hostkit.tuning.sensor_choice import sensor_config
 from hostkit.tuning.task import Task
@@ -68,6 +69,8 @@ def tune(recordings: tuple[AnyRecording, ...], options: TuningOptions) -> Tuning
     """
     with tempfile.TemporaryDirectory(prefix="hostkit-") as folder:
         problem = tuning_task(recordings, options, Path(folder))
+        if problem.is_dear:
+            problem = archived(problem, LEAST_UNITS)
         return _tune(problem, recordings, options)
 
 

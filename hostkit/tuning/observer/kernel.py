@@ -1,0 +1,209 @@
+"""The observer for many sets of parameters over a recording: in C, or the float model in turn."""
+
+import ctypes
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.attitude import inclination_rad, pitch_from_up, roll_from_up, to_body, wrap_rad
+from hostkit.filters.observer import limits
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
+from hostkit.mounting import Mounting
+from hostkit.records import Objective, read_only
+from hostkit.tuning.evaluation import Quantity
+from hostkit.tuning.kernel.arrays import edges
+from hostkit.units import STANDARD_GRAVITY_M_S2
+
+Vector = NDArray[np.float64]
+
+SOURCES: Final = (Path(__file__).with_name("kernel.c"),)
+LANES: Final = 8
+
+QUANTITY_NUMBER: Final[dict[Quantity, int]] = {"inclination": 0, "roll": 1, "pitch": 2}
+
+GAINS: Final = ("kt", "kv", "kb")
+NEVER: Final = -1.0
+"""A threshold that nothing stays below: rest is not looked for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Track:
+    """A recording as the kernel reads it, sensor axes.
+
+    Attributes
+    ----------
+    rate_rad_s, force_m_s2, reference
+        Angular rate, specific force, and reference direction of up, each of shape ``(N, 3)``.
+    scored
+        Samples that count, shape ``(N,)``.
+    """
+
+    rate_rad_s: Vector
+    force_m_s2: Vector
+    reference: Vector
+    scored: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for array in (self.rate_rad_s, self.force_m_s2, self.reference):
+            read_only(array)
+        read_only(self.scored)
+
+    def __len__(self) -> int:
+        return len(self.scored)
+
+    def deviation_rad(self, up: Vector, quantity: Quantity, mounting: Mounting) -> Vector:
+        """Return the error of directions of up, shape ``(N,)``: an angle's, or the inclination."""
+        if quantity == "inclination":
+            return inclination_rad(up, self.reference)
+        angle = roll_from_up if quantity == "roll" else pitch_from_up
+        return wrap_rad(angle(to_body(mounting, up)) - angle(to_body(mounting, self.reference)))
+
+
+class _Track(ctypes.Structure):
+    """``hk_track`` of ``kernel.c``."""
+
+    _fields_ = (
+        ("samples", ctypes.c_long),
+        ("rate_rad_s", ctypes.c_void_p),
+        ("force_m_s2", ctypes.c_void_p),
+        ("reference", ctypes.c_void_p),
+        ("scored", ctypes.c_void_p),
+    )
+
+
+class _Terms(ctypes.Structure):
+    """``hk_terms`` of ``kernel.c``."""
+
+    _fields_ = (
+        ("period_s", ctypes.c_double),
+        ("mean_weight", ctypes.c_double),
+        ("rest_s", ctypes.c_double),
+        ("start_gain", ctypes.c_double),
+        ("restart_gain", ctypes.c_double),
+        ("bias_limit", ctypes.c_double),
+        ("acceleration_limit", ctypes.c_double),
+        ("correction_limit", ctypes.c_double),
+        ("start_limit", ctypes.c_double),
+        ("lead_limit", ctypes.c_double),
+        ("gravity", ctypes.c_double),
+        ("body", ctypes.c_double * 9),
+        ("quantity", ctypes.c_int),
+        ("squared", ctypes.c_int),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terms:
+    """What all candidates have in common."""
+
+    period_s: float
+    mounting: Mounting
+    quantity: Quantity
+    objective: Objective
+
+    def structure(self) -> _Terms:
+        """Return them for C."""
+        body = np.zeros((3, 3))
+        for row, (source, sign) in enumerate(
+            zip(self.mounting.source, self.mounting.sign, strict=True)
+        ):
+            body[row, source] = sign
+        period_s = self.period_s
+        return _Terms(
+            period_s=period_s,
+            mean_weight=2.0 ** -limits.mean_shift(period_s),
+            rest_s=limits.rest_samples(period_s) * period_s,
+            start_gain=limits.START_GAIN,
+            restart_gain=limits.START_GAIN,
+            bias_limit=BIAS_LIMIT_RAD_S,
+            acceleration_limit=limits.ACCELERATION_LIMIT_M_S2,
+            correction_limit=limits.correction_limit_rad(period_s),
+            start_limit=limits.START_LIMIT_RAD,
+            lead_limit=limits.LEAD_LIMIT_RAD,
+            gravity=STANDARD_GRAVITY_M_S2,
+            body=(ctypes.c_double * 9)(*body.ravel()),
+            quantity=QUANTITY_NUMBER[self.quantity],
+            squared=self.objective == "rmse",
+        )
+
+
+def candidate_table(values: dict[str, Vector], count: int, period_s: float) -> Vector:
+    """Return parameters by their names in a design as the kernel has them, ``(K, P)``."""
+
+    def of(name: str, axis: str | None, missing: float) -> Vector:
+        kind = BY_NAME[name]
+        key = next(kind.key(a) for a in SENSOR_AXES if axis in (None, a))
+        return values.get(key, np.full(count, missing))
+
+    start_s = of("start", None, 0.0)
+    with np.errstate(divide="ignore"):
+        start_end = np.minimum(np.where(start_s > 0.0, period_s / start_s, 1.0), 1.0)
+    rows = [of(name, None, 0.0) for name in GAINS]
+    rows += [start_end, of("rest_rate", None, NEVER), of("rest_force", None, NEVER)]
+    rows += [of("rest_gain", None, 0.0), of("lead", None, 0.0)]
+    for name in ("gyro_bias", "gyro_scale", "accel_offset", "accel_scale"):
+        rows += [of(name, axis, 0.0) for axis in SENSOR_AXES]
+    return np.stack(rows)
+
+
+class Kernel(Protocol):
+    """What the compiled observer does."""
+
+    def sums(self, track: Track, terms: Terms, table: Vector, blocks: int) -> Vector:
+        """Return sums of squares or magnitudes of candidates ``(K, P)``: ``(blocks, P)``."""
+
+    def ups(self, track: Track, terms: Terms, candidate: Vector) -> Vector:
+        """Return the directions of up of one candidate, shape ``(N, 3)``."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompiledObserver:
+    """The observer in C; ctypes lets other threads run meanwhile."""
+
+    library: ctypes.CDLL
+
+    def __post_init__(self) -> None:
+        """Declare the function."""
+        self.library.hk_observer_run.restype = None
+
+    def sums(self, track: Track, terms: Terms, table: Vector, blocks: int) -> Vector:
+        """Return sums of squares or magnitudes of candidates ``(K, P)``: ``(blocks, P)``."""
+        count = table.shape[1]
+        out = np.zeros((blocks, -(-count // LANES) * LANES))
+        for first in range(0, count, LANES):
+            columns = np.minimum(np.arange(first, first + LANES), count - 1)
+            out[:, first : first + LANES] = self._run(track, terms, table[:, columns], blocks)
+        return out[:, :count]
+
+    def ups(self, track: Track, terms: Terms, candidate: Vector) -> Vector:
+        """Return the directions of up of one candidate, shape ``(N, 3)``."""
+        ups = np.empty((len(track), 3))
+        self._run(track, terms, np.repeat(candidate[:, np.newaxis], LANES, axis=1), 1, ups)
+        return ups
+
+    def _run(
+        self, track: Track, terms: Terms, table: Vector, blocks: int, ups: Vector | None = None
+    ) -> Vector:
+        lanes, sums = np.ascontiguousarray(table), np.zeros((blocks, LANES))
+        ends = np.array(edges(len(track), blocks), dtype=np.dtype("long"))
+        read = _Track(
+            samples=len(track),
+            rate_rad_s=track.rate_rad_s.ctypes.data,
+            force_m_s2=track.force_m_s2.ctypes.data,
+            reference=track.reference.ctypes.data,
+            scored=track.scored.ctypes.data,
+        )
+        self.library.hk_observer_run(
+            ctypes.byref(read),
+            ctypes.byref(terms.structure()),
+            ctypes.c_void_p(lanes.ctypes.data),
+            ctypes.c_void_p(ends.ctypes.data),
+            ctypes.c_long(blocks),
+            ctypes.c_void_p(sums.ctypes.data),
+            ctypes.c_void_p(None if ups is None else ups.ctypes.data),
+        )
+        return sums

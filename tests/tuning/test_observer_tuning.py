@@ -1,0 +1,119 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recorded import SENSOR, recorded
+
+from hostkit.errors import DesignError, HostkitError, RecordingError
+from hostkit.filters.observer.parameters import BY_NAME
+from hostkit.mounting import Mounting
+from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
+from hostkit.tuning.archive import archived
+from hostkit.tuning.kernel.library import library
+from hostkit.tuning.observer import RANGES, SOURCES, observer_problem
+from hostkit.tuning.retuning import cross_validate
+from hostkit.tuning.search import search
+
+EVERY = tuple(r.name for r in RANGES)
+
+
+def problem(*recordings, **changes):
+    options = TuningOptions(filter="observer", sensor=SENSOR, **changes)
+    return observer_problem(recordings, options, Path())
+
+
+def points(p, count: int, seed: int = 1) -> np.ndarray:
+    share = np.random.default_rng(seed).random((count, len(p.space.lower)))
+    return p.space.lower + share * (p.space.upper - p.space.lower)
+
+
+@pytest.mark.skipif(library(SOURCES) is None, reason="no C compiler")
+@pytest.mark.parametrize("objective", ["rmse", "mae"])
+@pytest.mark.parametrize(
+    ("axes", "mounting"), [("both", "+x+y+z"), ("roll", "+z+x+y"), ("pitch", "-y+x+z")]
+)
+def test_the_compiled_observer_is_the_float_model(axes, mounting: str, objective) -> None:
+    recordings = recorded(duration_s=4.0), recorded("sine-sweep", seed=2, duration_s=3.0)
+    p = problem(
+        *recordings,
+        free=EVERY,
+        axes=axes,
+        mounting=Mounting.parse(mounting),
+        objective=objective,
+    )
+    x = points(p, 11)
+    compiled, modelled = p.block_sums(x, 3), replace(p, kernel=None).block_sums(x, 3)
+    assert compiled.shape == (2, 1, 3, 11)
+    np.testing.assert_allclose(compiled, modelled, rtol=1e-5 if axes == "both" else 1e-9)
+
+
+def test_blocks_add_up_and_only_scored_samples_count() -> None:
+    recording = recorded(duration_s=4.0)
+    valid = np.arange(len(recording)) % 3 == 0
+    p = problem(replace(recording, valid=valid))
+    x = points(p, 2)
+    np.testing.assert_allclose(p.block_sums(x, 4).sum(axis=2), p.block_sums(x, 1)[:, :, 0])
+    assert p.block_counts(4).sum() == valid.sum()
+    rms = np.sqrt(p.block_sums(x[:1], 1)[0, 0, 0, 0] / valid.sum())
+    assert p.rms_rad(x[0], 0) == pytest.approx(rms, rel=1e-6)
+    assert p.cost(x)[0] == pytest.approx(rms, rel=1e-6)
+
+
+def test_a_search_beats_the_defaults_and_is_repeatable() -> None:
+    recordings = tuple(recorded("sine-sweep", seed=s, duration_s=6.0) for s in (1, 2, 3))
+    options = TuningOptions(filter="observer", iterations=20)
+    p = archived(problem(*recordings), 16)
+    found = search(p, options, "qpso")
+    again = search(archived(problem(*recordings), 16), options, "qpso")
+    np.testing.assert_array_equal(found.x, again.x)
+    middle = 0.5 * (p.space.lower + p.space.upper)
+    assert found.cost < p.cost(middle[np.newaxis])[0]
+    held_out = cross_validate(p, options)
+    assert held_out.folds == 3
+    assert all(np.isfinite(held_out.each_rad))
+
+
+def test_visited_points_are_judged_again_with_other_weights() -> None:
+    recording = recorded(duration_s=5.0)
+    p = archived(problem(recording), 16)
+    x = points(p, 6)
+    cost = p.cost(x)
+    visited = p.visited()
+    np.testing.assert_allclose(visited.in_blocks(5), p.block_sums(x, 5), rtol=1e-12)
+    np.testing.assert_allclose(visited.in_blocks(16), p.block_sums(x, 16), rtol=1e-12)
+    assert cost.shape == (6,)
+    held_out = cross_validate(p, TuningOptions(filter="observer"))
+    assert (held_out.unit, held_out.folds) == ("parts", 5)
+
+
+def test_what_is_fixed_and_what_is_left_stands_in_the_design() -> None:
+    fixed = (
+        FixedParameter(name="kv", value=0.5),
+        FixedParameter(name="gyro_scale", value=0.01, axis="y"),
+    )
+    p = problem(recorded(duration_s=2.0), free=("kt",), fixed=fixed)
+    found = {q.name: q.value for q in p.space.design_parameters(np.log([0.03]))}
+    assert found["kt_rad_m"] == pytest.approx(0.03)
+    assert found["kv_per_s"] == 0.5
+    assert found["gyro_scale_y"] == 0.01
+    assert "gyro_scale_x" not in found
+    assert "rest_rate_rad_s" in found
+
+
+def test_what_cannot_be_tuned_is_refused() -> None:
+    recording = recorded(duration_s=2.0)
+    with pytest.raises(DesignError, match="kt is to be tuned and fixed"):
+        problem(recording, free=("kt",), fixed=(FixedParameter(name="kt", value=0.1),))
+    with pytest.raises(DesignError, match="gyro_bias = 9"):
+        problem(recording, fixed=(FixedParameter(name="gyro_bias", value=9.0),))
+    with pytest.raises(DesignError, match="range of kv"):
+        narrow = SearchRange(name="kv", lowest=2.0, highest=1.0, is_log=True)
+        problem(recording, ranges=(narrow,))
+    with pytest.raises(RecordingError, match="no reference"):
+        problem(replace(recording, up_reference=None))
+    with pytest.raises(RecordingError, match="is valid"):
+        problem(replace(recording, valid=np.zeros(len(recording), dtype=bool)))
+    every = tuple(FixedParameter(name=n, value=BY_NAME[n].default) for n in EVERY)
+    with pytest.raises(HostkitError, match="every parameter is fixed"):
+        problem(recording, fixed=every)
