@@ -151,7 +151,7 @@ package hk_observer_program_pkg is
   constant gyro_bias_z : word_t := first_input_c + 11;
 
   -- What stands in the memory before the first sample.
-  type words_t is array (2 ** word_bits_c - 1 downto 0) of std_logic_vector(31 downto 0);
+  type words_t is array (natural range 2 ** word_bits_c - 1 downto 0) of std_logic_vector(31 downto 0);
   function initial_words return words_t;
 
   -- The programs, one behind the other: first sample; any other; angles, which follow both.
@@ -705,13 +705,15 @@ package body hk_observer_program_pkg is
   end function whole_program;
 
   function step_place return natural is
+    constant before_c : program_t := first_program;
   begin
-    return first_program'length;
+    return before_c'length;
   end function step_place;
 
   function angles_place return natural is
+    constant before_c : program_t := first_program & step_program;
   begin
-    return first_program'length + step_program'length;
+    return before_c'length;
   end function angles_place;
 
 end package body hk_observer_program_pkg;

@@ -55,7 +55,7 @@ package hk_sequence_pkg is
   -- The program as it stands in memory.
   constant place_bits_c : positive := 10;
   subtype code_t is std_logic_vector(31 downto 0);
-  type codes_t is array (2 ** place_bits_c - 1 downto 0) of code_t;
+  type codes_t is array (natural range 2 ** place_bits_c - 1 downto 0) of code_t;
   function assembled (program : program_t) return codes_t;
 
   -- A code in its fields.
