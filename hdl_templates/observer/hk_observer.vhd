@@ -165,9 +165,11 @@ begin
 
   -- Counts doubled, then the settings in their order.
   inputs : process (input_index, counts_r, settings)
+    variable count_v : signed(15 downto 0);
   begin
     if input_index(3) = '0' and input_index(2 downto 1) /= "11" then
-      input_word <= shift_left(resize(counts_r(to_integer(unsigned(input_index(2 downto 0)))), 32), 1);
+      count_v    := counts_r(to_integer(unsigned(input_index(2 downto 0))));
+      input_word <= shift_left(resize(count_v, 32), 1);
     elsif input_index(3 downto 0) = "0110" then
       input_word <= settings.kt;
     elsif input_index(3 downto 0) = "0111" then

@@ -104,10 +104,10 @@ package body hk_observer_program_pkg is
     take(zero, into => accel_mean_z)
   );
 
-  -- A force in 1 g, 25 fraction bits, clamped.
+  -- A force, clamped; 27.
   function first_force (force, into : word_t) return program_t is
   begin
-    return take(force) & clamp(first_force_limit, into) & take(into, times_acceleration, into);
+    return take(force) & clamp(first_force_limit, into) & take(into, times_first_force, into);
   end function first_force;
 
   function first_program return program_t is
@@ -310,9 +310,9 @@ package body hk_observer_program_pkg is
   function align return program_t is
     constant turns_c : program_t := (
       take(half_x),
-      plus(align_y, times_32, into => half_x),
+      plus(align_y, times_64, into => half_x),
       take(half_y),
-      less(align_x, times_32, into => half_y)
+      less(align_x, times_64, into => half_y)
     );
     constant weight_c : program_t := (
       take(start_gain, start_gain, into => spare_x),
@@ -390,8 +390,8 @@ package body hk_observer_program_pkg is
       & follow(b_z, row_xz, row_yz, spare_z);
   begin
     return only_with(has_rest_c, rest) & only_with(has_clip_c, clipping) & motion_c & velocity
-           & correction_c & only_with(has_align_c, align) & correct_c & lack_c & decay_c & lack_30_c & followed_c & lengthen_c
-           & bias_c;
+           & correction_c & only_with(has_align_c, align) & correct_c
+           & lack_c & decay_c & lack_30_c & followed_c & lengthen_c & bias_c;
   end function step_program;
 
   -- Up in sensor axes.
@@ -443,7 +443,8 @@ package body hk_observer_program_pkg is
 
   function angles_program return program_t is
   begin
-    return ending(up_c & only_with(has_lead_c, ahead) & show(body_x_c, true)
+    -- The word that is there last comes first, so that every mounting takes as long.
+    return ending(up_c & only_with(has_lead_c, ahead) & take(up_z) & show(body_x_c, true)
                   & show(body_y_c, false) & show(body_z_c, false));
   end function angles_program;
 

@@ -56,7 +56,7 @@ package hk_observer_words_pkg is
   constant row_yx       : word_t := 46;
   constant row_yy       : word_t := 47;
   constant row_yz       : word_t := 48;
-  constant accel_h_x    : word_t := 49;  -- horizontal acceleration, m/s^2; 25
+  constant accel_h_x    : word_t := 49;  -- horizontal acceleration, m/s^2; 24
   constant accel_h_y    : word_t := 50;
   constant d_x          : word_t := 51;  -- correction about the earth's axes
   constant d_y          : word_t := 52;
@@ -128,11 +128,12 @@ package hk_observer_words_pkg is
   constant times_2            : word_t := one_c + 1;
   constant times_8            : word_t := one_c + 2;
   constant times_16           : word_t := one_c + 3;
-  constant times_32           : word_t := one_c + 4;
+  constant times_64           : word_t := one_c + 4;
   constant times_acceleration : word_t := one_c + 5;
   constant times_first_bias   : word_t := one_c + 6;
   constant times_rest         : word_t := one_c + 7;
-  constant times_count        : word_t := one_c + 8;  -- a doubled count with 14 fraction bits
+  constant times_first_force  : word_t := one_c + 8;
+  constant times_count        : word_t := one_c + 9;  -- a doubled count with 14 fraction bits
 
   -- Inputs. Counts are doubled: their gains have 15 fraction bits.
   constant accel_x     : word_t := first_input_c;
@@ -208,10 +209,11 @@ package body hk_observer_words_pkg is
     words_v(times_2)            := word(2 ** 17);
     words_v(times_8)            := word(2 ** 19);
     words_v(times_16)           := word(2 ** 20);
-    words_v(times_32)           := word(2 ** 21);
+    words_v(times_64)           := word(2 ** 22);
     words_v(times_acceleration) := word(2 ** (16 + acceleration_left_c));
     words_v(times_first_bias)   := word(2 ** (16 + first_bias_left_c));
     words_v(times_rest)         := word(2 ** (16 + rest_left_c));
+    words_v(times_first_force)  := word(2 ** (16 + first_force_left_c));
     words_v(times_count)        := word(2 ** 29);
     return words_v;
   end function initial_words;

@@ -3,8 +3,8 @@
 --   accumulator := [accumulator] +- floor(a * b / 2**32)      and, if wanted, into := accumulator
 --
 -- a and b are words of 32 bits. For a b from first_whole_c on it is 2**16 in place of 2**32; those
--- are constants with 16 fraction bits. From one_c on their fraction is 0: with them words are moved,
--- added and shifted to the left, in one clock instead of two.
+-- are constants with 16 fraction bits. From one_c on their fraction is 0: with them words are
+-- moved, added and shifted to the left, in one clock instead of two.
 -- A condition looks at the sign that the accumulator had at the last test.
 library ieee;
 use ieee.std_logic_1164.all;
