@@ -150,7 +150,8 @@ package hk_observer_words_pkg is
   constant gyro_bias_z : word_t := first_input_c + 11;
 
   -- What stands in the memory before the first sample.
-  type words_t is array (natural range 2 ** word_bits_c - 1 downto 0) of std_logic_vector(31 downto 0);
+  type words_t is array (natural range 2 ** word_bits_c - 1 downto 0)
+    of std_logic_vector(31 downto 0);
   function initial_words return words_t;
 
 end package hk_observer_words_pkg;

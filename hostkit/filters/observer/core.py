@@ -11,7 +11,7 @@ from hostkit.filters.core import (
 from hostkit.filters.observer.lowering import gain_bits
 from hostkit.filters.observer.spec import ObserverSpec
 
-STEP_CLOCKS = 371
+STEP_CLOCKS = 373
 """Of a sample without any of the parts below, angles included; the first sample takes less."""
 
 REST_CLOCKS, ALIGN_CLOCKS, CLIP_CLOCKS, LEAD_CLOCKS = 166, 51, 35, 53
@@ -48,9 +48,7 @@ def core_facts(spec: ObserverSpec, _pipelined: bool) -> CoreFacts:
                 present=spec.clip_count is not None,
                 title="a rate that is clipped makes it align again",
             ),
-            CoreFeature(
-                name="LEAD", present=spec.lead_raw != 0, title="the angles are told ahead"
-            ),
+            CoreFeature(name="LEAD", present=spec.lead_raw != 0, title="the angles are told ahead"),
         ),
         formats=_formats(spec),
         quantities=_quantities(spec),
