@@ -299,6 +299,7 @@ package body hk_observer_program_pkg is
   end function velocity;
 
   constant correction_c : program_t := (
+    take(u_x, into => d_away_y),
     negate(u_x, into => d_y),
     take(u_y, into => d_x),
     take(start_gain, half_per_g, into => per_force),
@@ -349,10 +350,11 @@ package body hk_observer_program_pkg is
     less(half_y, n_1, into => q_3)
   );
 
-  -- The bias follows the rate at rest, and else the correction.
+  -- The bias follows the rate at rest, and else the correction. One product is taken off and one is
+  -- added, so that what they lose by rounding does not add up.
   constant followed_c : program_t := (
     take(kb, d_x, into => follow_x),
-    take(kb, d_y, into => follow_y),
+    take(kb, d_away_y, into => follow_y),
     take(turn_x, times_rest, into => spare_x),
     take(turn_y, times_rest, into => spare_y),
     take(turn_z, times_rest, into => spare_z),
@@ -368,7 +370,7 @@ package body hk_observer_program_pkg is
     constant program_c : program_t := (
       take(bias),
       less(along_x, follow_x),
-      less(along_y, follow_y),
+      plus(along_y, follow_y),
       plus(turn, rest_gain)
     );
   begin

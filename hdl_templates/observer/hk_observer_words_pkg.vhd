@@ -66,7 +66,7 @@ package hk_observer_words_pkg is
   constant align_x      : word_t := 56;
   constant align_y      : word_t := 57;
   constant more         : word_t := 58;  -- what the orientation lacks in length; 32
-  constant follow_x     : word_t := 59;  -- what the bias follows, about the earth's axes
+  constant follow_x     : word_t := 59;  -- what the bias follows, about x and against y
   constant follow_y     : word_t := 60;
   constant rest_gain    : word_t := 61;
   constant up_x         : word_t := 62;  -- the earth's up in sensor axes; 27
@@ -81,6 +81,7 @@ package hk_observer_words_pkg is
   constant spare_x      : word_t := 71;  -- between two instructions
   constant spare_y      : word_t := 72;
   constant spare_z      : word_t := 73;
+  constant d_away_y     : word_t := 74;  -- correction against the earth's y
 
   -- Constants; as a factor b they have 32 fraction bits.
   constant zero               : word_t := 96;
