@@ -3,7 +3,7 @@
 from hostkit.validation.checks import Check, checks
 from hostkit.validation.histogram import Histogram, LogHistogram
 from hostkit.validation.judged import Judged
-from hostkit.validation.retuning import DeviceParameter, device_parameters
+from hostkit.validation.retuning import device_parameters
 from hostkit.validation.thresholds import (
     DEFAULT_MAX_LOST_SHARE,
     DEFAULT_MAX_RMS_DEG,
@@ -15,7 +15,6 @@ __all__ = [
     "DEFAULT_MAX_LOST_SHARE",
     "DEFAULT_MAX_RMS_DEG",
     "Check",
-    "DeviceParameter",
     "Histogram",
     "Judged",
     "LogHistogram",
