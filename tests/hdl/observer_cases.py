@@ -25,7 +25,7 @@ CALIBRATION = (
     parameter("accel_offset", -1.5, "z"),
     parameter("accel_scale", 0.1, "x"),
 )
-GAINS = (parameter("kt", 1.2), parameter("kv", 12.4), parameter("kb", 1.0))
+GAINS = (parameter("kt", 1.2), parameter("kv", 12.4), parameter("kb", 0.1))
 
 
 def lead(seconds: float) -> tuple[Parameter, ...]:

@@ -76,7 +76,7 @@ def test_settings_are_taken_over_between_samples(core: Path) -> None:
     accel, gyro = (counts[-12:] for counts in count_vectors())
     changed = design(
         *(*REST, *START, *lead(0.004), parameter("kt", 0.5), parameter("kv", 3.0)),
-        *(parameter("kb", 0.4), parameter("gyro_bias", 0.1, "y")),
+        *(parameter("kb", 0.05), parameter("gyro_bias", 0.1, "y")),
         rate_hz=25.0,
     )
     spec, other = lower(FULL), lower(changed)
