@@ -29,7 +29,7 @@ package hk_sequence_pkg is
     into  : word_t;
     keep  : boolean;  -- what the accumulator holds
     minus : boolean;
-    mode : condition_t;
+    mode  : condition_t;
     last  : boolean;  -- of its program
   end record;
   type program_t is array (natural range <>) of instruction_t;
@@ -192,7 +192,7 @@ package body hk_sequence_pkg is
     fields_v.waits := unsigned(code(26 downto 24));
     fields_v.keep  := code(27);
     fields_v.minus := code(28);
-    fields_v.mode := code(30 downto 29);
+    fields_v.mode  := code(30 downto 29);
     fields_v.last  := code(31);
     return fields_v;
   end function decoded;

@@ -50,7 +50,7 @@ architecture rtl of hk_sequencer is
     whole : std_logic;
     keep  : std_logic;
     minus : std_logic;
-    mode : std_logic_vector(1 downto 0);
+    mode  : std_logic_vector(1 downto 0);
     last  : std_logic;
   end record;
   type steps_t is array (operands_c to write_c) of step_t;
@@ -93,7 +93,7 @@ architecture rtl of hk_sequencer is
 
 begin
 
-  now  <= decoded(code_r);
+  now    <= decoded(code_r);
   begins <= '1' when runs_r = '1' and second_r = '0' and waited_r = decoded(code_r).waits else '0';
   short  <= now.b(7) and now.b(5);
   lower  <= begins and not short;
@@ -138,7 +138,7 @@ begin
                               whole => now.b(7),
                               keep  => now.keep,
                               minus => now.minus,
-                              mode => now.mode,
+                              mode  => now.mode,
                               last  => now.last);
       steps_r(product_c to write_c) <= steps_r(operands_c to write_c - 1);
 
