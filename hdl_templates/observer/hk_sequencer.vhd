@@ -20,7 +20,7 @@ entity hk_sequencer is
     place       : in  unsigned(place_bits_c - 1 downto 0);  -- of the first instruction
     done        : out std_logic;  -- for one clock: the last result is there
     input_index : out std_logic_vector(5 downto 0);
-    input       : in  signed(31 downto 0);  -- the word of that index, at once
+    input_word  : in  signed(31 downto 0);  -- the word of that index, at once
     measure     : out std_logic;  -- for one clock: result is one for the arc tangent
     result      : out signed(31 downto 0);
     state_index : in  unsigned(4 downto 0);  -- while no program runs
@@ -50,7 +50,7 @@ architecture rtl of hk_sequencer is
     whole : std_logic;
     keep  : std_logic;
     minus : std_logic;
-    mode : std_logic_vector(1 downto 0);
+    mode  : std_logic_vector(1 downto 0);
     last  : std_logic;
   end record;
   type steps_t is array (operands_c to write_c) of step_t;
@@ -93,7 +93,7 @@ architecture rtl of hk_sequencer is
 
 begin
 
-  now  <= decoded(code_r);
+  now    <= decoded(code_r);
   begins <= '1' when runs_r = '1' and second_r = '0' and waited_r = decoded(code_r).waits else '0';
   short  <= now.b(7) and now.b(5);
   lower  <= begins and not short;
@@ -138,7 +138,7 @@ begin
                               whole => now.b(7),
                               keep  => now.keep,
                               minus => now.minus,
-                              mode => now.mode,
+                              mode  => now.mode,
                               last  => now.last);
       steps_r(product_c to write_c) <= steps_r(operands_c to write_c - 1);
 
@@ -188,7 +188,7 @@ begin
 
       factor_r <= word_a;
       if input_r = '1' then
-        factor_r <= input;
+        factor_r <= input_word;
       end if;
       coefficient_r <= resize(word_b(31 downto 16), 18);
       if lowers_r(operands_c) = '1' then
