@@ -1,8 +1,8 @@
 """The MAVLink dialect of hostkit, made by the installed pymavlink for C and for Python.
 
 The standard messages are taken out of the definitions that pymavlink ships; only ``TILT_SAMPLE``
-is written here. Nothing that mavgen makes is committed: headers are made when code is generated,
-the Python module when it is first needed.
+and ``TILT_STATE`` are written here. Nothing that mavgen makes is committed: headers are made when
+code is generated, the Python module when it is first needed.
 """
 
 import contextlib
@@ -45,6 +45,8 @@ SIGNATURE_BYTES = 13
 """What a signature adds to a frame."""
 HIDDEN_WORDS = 2
 """Words that ``TILT_SAMPLE`` has for the state of a filter beside its angles."""
+STATE_WORDS = 24
+"""Words that ``TILT_STATE`` has for a state of which ``TILT_SAMPLE`` tells nothing."""
 HIDDEN_WORD_BYTES = 4
 
 
@@ -168,3 +170,8 @@ def sample_bytes(hidden_words: int) -> int:
     They are its last fields, and MAVLink 2 cuts trailing zeros.
     """
     return payload_bytes("TILT_SAMPLE") - HIDDEN_WORD_BYTES * (HIDDEN_WORDS - hidden_words)
+
+
+def state_bytes(words: int) -> int:
+    """Return the size of ``TILT_STATE``'s payload when so many of its words are used."""
+    return payload_bytes("TILT_STATE") - HIDDEN_WORD_BYTES * (STATE_WORDS - words)

@@ -4,6 +4,7 @@ from typing import Any
 
 from hostkit.filters.complementary import COMPLEMENTARY
 from hostkit.filters.filter import Filter
+from hostkit.filters.observer import OBSERVER
 from hostkit.registry import Registry
 
-FILTERS: Registry[Filter[Any]] = Registry("filter", (COMPLEMENTARY,))
+FILTERS: Registry[Filter[Any]] = Registry("filter", (COMPLEMENTARY, OBSERVER))

@@ -35,6 +35,9 @@ ROOT_FRACTION_BITS = 8
 
 SLOPE_BITS = 17
 RATIO_LIMIT: float = 2.0**-TURN_DIGITS
+LEAST_WORD = 2**13
+"""A vector of two components below this is zero: of its ratio the digits would not be exact."""
+
 QUARTER, HALF = 2**30, 2**31
 
 IntArray = NDArray[np.int64]
@@ -106,24 +109,42 @@ def atan2_count(
     y_count, x_count
         Components, from -2**15 to 2**15, shape ``(N,)``.
     """
-    y, x = np.abs(y_count) << table.guard_bits, np.abs(x_count) << table.guard_bits
-    angle, length, stretch = vector_angle(table, y, x)
-    angle = np.where(x_count < 0, HALF - angle, angle)
-    return _with_sign_of(y_count, angle), length, stretch
+    return atan2_word(table, y_count << table.guard_bits, x_count << table.guard_bits)
+
+
+def atan2_word(table: ArctanTable, y: IntArray, x: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the same of vectors whose components fill a word.
+
+    Parameters
+    ----------
+    y, x
+        Components, from -2**30 to 2**30, shape ``(N,)``. Where both are below LEAST_WORD, the
+        vector counts as zero.
+    """
+    nothing = np.maximum(np.abs(y), np.abs(x)) < LEAST_WORD
+    y, x = np.where(nothing, 0, y), np.where(nothing, 0, x)
+    angle, length, stretch = vector_angle(table, np.abs(y), np.abs(x))
+    angle = np.where(x < 0, HALF - angle, angle)
+    return _with_sign_of(y, angle), length, stretch
 
 
 def atan2_length(
     table: ArctanTable, y_count: IntArray, length: IntArray, stretch: IntArray
 ) -> IntArray:
-    """Return the angle of ``(length, y)`` for a length that :func:`atan2_count` gave.
+    """Return the angle of ``(length, y)`` for a length that :func:`atan2_count` gave."""
+    return atan2_word_length(table, y_count << table.guard_bits, length, stretch)
 
-    The stretch of the length is put on `y_count` instead of being divided out of `length`.
+
+def atan2_word_length(
+    table: ArctanTable, y: IntArray, length: IntArray, stretch: IntArray
+) -> IntArray:
+    """Return the angle of ``(length, y)`` for a length that :func:`atan2_word` gave.
+
+    The stretch of the length is put on `y` instead of being divided out of `length`.
     """
-    size = np.abs(y_count)
-    y = (size << table.guard_bits) + (
-        (size * stretch) >> (STRETCH_FRACTION_BITS - table.guard_bits)
-    )
-    return _with_sign_of(y_count, vector_angle(table, y, length)[0])
+    size = np.abs(y)
+    size = size + ((size * stretch) >> STRETCH_FRACTION_BITS)
+    return _with_sign_of(y, vector_angle(table, size, length)[0])
 
 
 def arcsin_count(table: ArctanTable, y_count: IntArray, one_count: int) -> IntArray:

@@ -203,6 +203,7 @@ def render_context(
     else:
         firmware = firmware_options_of(target, options)
     sensor = _sensor_context(design)
+    link = link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden))
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -220,11 +221,16 @@ def render_context(
             sensor.variant_configuration,
             period_us=round(1e6 * design.period_s),
         ),
-        link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
+        link=link,
         options=firmware,
         fpga=fpga,
         report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
-        mavlink=mavlink_context(firmware.identity, firmware.system_id, _hidden_biases(spec)),
+        mavlink=mavlink_context(
+            firmware.identity,
+            firmware.system_id,
+            _hidden_biases(spec),
+            state_words=link.state_words,
+        ),
         registers=registers_context(register_map(design, spec, chosen)),
         target=target,
     )

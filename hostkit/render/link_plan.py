@@ -7,8 +7,10 @@ from hostkit.dialect import (
     FRAME_OVERHEAD_BYTES,
     HIDDEN_WORDS,
     SIGNATURE_BYTES,
+    STATE_WORDS,
     payload_bytes,
     sample_bytes,
+    state_bytes,
 )
 from hostkit.errors import RenderError
 from hostkit.filters import FILTERS
@@ -23,6 +25,8 @@ from hostkit.targets import Target
 
 ATTITUDE_MAX_HZ = 50.0
 """Unless more is asked for."""
+STATE_HZ = 1.0
+"""So often the state of a filter is told that does not fit its samples."""
 DEFAULT_TIMED_HZ = {"SYS_STATUS": 1.0, "HEARTBEAT": 1.0}
 DIVISOR_TOLERANCE = 1e-3
 """A rate is taken for an integer divisor of another if it is as near as it is commonly written."""
@@ -71,7 +75,10 @@ class LinkPlan:
     usable_bytes_s
         What the link may be asked to carry, bytes/s; 0 where there is no link.
     messages
-        All that can be streamed, in the order in which they are sent.
+        All that can be streamed, in the order in which they are sent. TILT_STATE is among them
+        only if the filter's state does not fit TILT_SAMPLE.
+    state_words
+        Words that TILT_STATE tells; 0 where it is not sent.
     """
 
     system_id: int
@@ -81,6 +88,7 @@ class LinkPlan:
     baud: int
     usable_bytes_s: int
     messages: tuple[StreamedMessage, ...]
+    state_words: int
 
     @property
     def bytes_per_s(self) -> int:
@@ -103,7 +111,7 @@ class LinkPlan:
 
     def every(self, name: str) -> int:
         """Return with which samples a message goes out: every so many-th; 0 if with none."""
-        return next(m.every for m in self.messages if m.name == name)
+        return next((m.every for m in self.messages if m.name == name), 0)
 
 
 def link_plan(
@@ -120,15 +128,16 @@ def link_plan(
     rate_hz
         Samples a second.
     hidden_words
-        Words of the filter's state beside its angles; every sample carries them.
+        Words of the filter's state beside its angles. Every sample carries them, or if they are too
+        many a message of their own does.
 
     Raises
     ------
     RenderError
-        If the messages do not fit 80 % of the link, the target cannot make its rate, a sample
-        cannot carry the state, or a message is to go out at a rate that the samples do not give.
+        If the messages do not fit 80 % of the link, the target cannot make its rate, no message
+        can carry the state, or a message is to go out at a rate that the samples do not give.
     """
-    _require_words(hidden_words)
+    _require_words(hidden_words, options)
     identity = options.identity
     baud = options.baud or target.baud
     _require_baud(target, baud)
@@ -139,7 +148,12 @@ def link_plan(
         autopilot=identity.autopilot,
         baud=baud,
         usable_bytes_s=baud // BITS_PER_BYTE * USABLE_PERCENT // 100,
-        messages=tuple(_streamed(n, rate_hz, options, hidden_words) for n in STREAMED_MESSAGES),
+        messages=tuple(
+            _streamed(name, rate_hz, options, hidden_words)
+            for name in STREAMED_MESSAGES
+            if name != "TILT_STATE" or hidden_words > HIDDEN_WORDS
+        ),
+        state_words=hidden_words if hidden_words > HIDDEN_WORDS else 0,
     )
     if baud and plan.bytes_per_s > plan.usable_bytes_s:
         raise RenderError(_too_much(plan, rate_hz, target))
@@ -152,11 +166,16 @@ def link_of(design: FilterDesign, target: Target, options: FirmwareOptions) -> L
     return link_plan(design.rate_hz, target, options, hidden_words=len(spec.hidden))
 
 
-def _require_words(hidden_words: int) -> None:
-    if hidden_words > HIDDEN_WORDS:
+def _require_words(hidden_words: int, options: FirmwareOptions) -> None:
+    if hidden_words > STATE_WORDS:
         raise RenderError(
             f"the filter has {hidden_words} words of state beside its angles; "
-            f"TILT_SAMPLE carries {HIDDEN_WORDS}"
+            f"TILT_STATE carries {STATE_WORDS}"
+        )
+    if options.rate_hz("TILT_STATE") and hidden_words <= HIDDEN_WORDS:
+        raise RenderError(
+            "this filter has no TILT_STATE: each TILT_SAMPLE tells its whole state; "
+            "leave the message out"
         )
 
 
@@ -174,25 +193,54 @@ def _require_baud(target: Target, baud: int) -> None:
 def _streamed(
     name: str, rate_hz: float, options: FirmwareOptions, hidden_words: int
 ) -> StreamedMessage:
-    payload = sample_bytes(hidden_words) if name == "TILT_SAMPLE" else payload_bytes(name)
     overhead = FRAME_OVERHEAD_BYTES + (SIGNATURE_BYTES if options.signing else 0)
     chosen_hz = options.rate_hz(name)
     if name in SAMPLE_MESSAGES:
         every = _every(name, rate_hz, chosen_hz)
+        if name == "TILT_STATE":
+            samples = _every("TILT_SAMPLE", rate_hz, options.rate_hz("TILT_SAMPLE"))
+            every = _with_samples(every, samples, chosen_hz)
         interval_us = every * round(1e6 / rate_hz)
     else:
         every = 0
         hz = DEFAULT_TIMED_HZ[name] if chosen_hz is None else chosen_hz
         interval_us = round(1e6 / hz) if hz else 0
     return StreamedMessage(
-        name=name, every=every, interval_us=interval_us, frame_bytes=payload + overhead
+        name=name,
+        every=every,
+        interval_us=interval_us,
+        frame_bytes=_payload(name, hidden_words) + overhead,
     )
+
+
+def _with_samples(every: int, samples: int, chosen_hz: float | None) -> int:
+    """Return with every how-many-th sample a state goes out, which is told behind its sample."""
+    if samples:
+        return max(1, round(every / samples)) * samples if every else 0
+    if chosen_hz:
+        raise RenderError(
+            f"TILT_STATE = {chosen_hz:g} Hz, but TILT_SAMPLE is off, behind which it goes out"
+        )
+    return 0
+
+
+def _payload(name: str, hidden_words: int) -> int:
+    """Return the bytes of a message's payload that may be other than zero."""
+    if name == "TILT_STATE":
+        return state_bytes(hidden_words)
+    if name == "TILT_SAMPLE":
+        return sample_bytes(0 if hidden_words > HIDDEN_WORDS else hidden_words)
+    return payload_bytes(name)
 
 
 def _every(name: str, rate_hz: float, chosen_hz: float | None) -> int:
     """Return with every how-many-th sample a message goes out, 0 for never."""
     if chosen_hz is None:
-        default = {"TILT_SAMPLE": 1, "ATTITUDE": max(1, math.ceil(rate_hz / ATTITUDE_MAX_HZ))}
+        default = {
+            "TILT_SAMPLE": 1,
+            "TILT_STATE": max(1, round(rate_hz / STATE_HZ)),
+            "ATTITUDE": max(1, math.ceil(rate_hz / ATTITUDE_MAX_HZ)),
+        }
         return default.get(name, 0)
     if chosen_hz == 0.0:
         return 0

@@ -4,13 +4,15 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from hostkit.dialect import python_module, sample_bytes
+from hostkit.dialect import STATE_WORDS, python_module, sample_bytes, state_bytes
 from hostkit.errors import RenderError
 from hostkit.records import Axis
 from hostkit.render.options import Identity
 
 MOST_PAYLOAD_BYTES = 51
 """`hk_mavlink_tx` numbers the bytes of a frame with 6 bits, and 13 are not of the payload."""
+MOST_STATE_BYTES = 114
+"""The same of ``TILT_STATE``: where it is sent, bytes are numbered with 7 bits."""
 MAVLINK_VERSION = 3
 """The protocol's own number, in every HEARTBEAT of version 2."""
 FLAGS = ("RESTARTED", "SATURATED", "RETUNED")
@@ -53,10 +55,11 @@ class MessageContext:
 
     def __post_init__(self) -> None:
         """Refuse what the core cannot number."""
-        if self.payload_bytes > MOST_PAYLOAD_BYTES:
+        most = MOST_STATE_BYTES if self.title == "TILT_STATE" else MOST_PAYLOAD_BYTES
+        if self.payload_bytes > most:
             raise RenderError(
                 f"{self.title} has a payload of {self.payload_bytes} bytes; "
-                f"the limit of hk_mavlink_tx is {MOST_PAYLOAD_BYTES}"
+                f"the limit of hk_mavlink_tx is {most}"
             )
 
 
@@ -78,8 +81,10 @@ class MavlinkContext:
         First byte of a frame; the protocol's number in a heartbeat.
     system_id, component_id, vehicle_type, autopilot
         Who the device says it is.
-    sample, heartbeat
+    sample, heartbeat, state
         The messages.
+    tells_state, state_words
+        Whether the last of them is sent, and how many of its words are used.
     hides_bias_roll, hides_bias_pitch
         Whether that bias is hidden state.
     bias_roll_word, bias_pitch_word
@@ -96,6 +101,9 @@ class MavlinkContext:
     autopilot: int
     sample: MessageContext
     heartbeat: MessageContext
+    state: MessageContext
+    tells_state: bool
+    state_words: int
     hides_bias_roll: bool
     hides_bias_pitch: bool
     bias_roll_word: int
@@ -104,7 +112,7 @@ class MavlinkContext:
 
 
 def mavlink_context(
-    identity: Identity, system_id: int, hidden_axes: tuple[Axis, ...]
+    identity: Identity, system_id: int, hidden_axes: tuple[Axis, ...], *, state_words: int = 0
 ) -> MavlinkContext:
     """Lay out the messages of the dialect that the installed pymavlink makes.
 
@@ -112,6 +120,8 @@ def mavlink_context(
     ----------
     hidden_axes
         Axes whose bias is hidden state, in the order of the design.
+    state_words
+        Words that ``TILT_STATE`` tells; 0 where it is not sent.
 
     Raises
     ------
@@ -128,6 +138,9 @@ def mavlink_context(
         autopilot=identity.autopilot,
         sample=_message("TILT_SAMPLE", "sample", sample_bytes(len(hidden_axes))),
         heartbeat=_message("HEARTBEAT", "heartbeat", None),
+        state=_message("TILT_STATE", "state", state_bytes(state_words or STATE_WORDS)),
+        tells_state=state_words > 0,
+        state_words=state_words,
         hides_bias_roll="roll" in hidden_axes,
         hides_bias_pitch="pitch" in hidden_axes,
         bias_roll_word=_word("roll", hidden_axes),

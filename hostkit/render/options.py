@@ -10,7 +10,10 @@ Profile = Literal["gcs", "component"]
 Arithmetic = Literal["fixed", "float"]
 Acquisition = Literal["burst", "fifo"]
 
-SAMPLE_MESSAGES: Final = ("TILT_SAMPLE", "ATTITUDE", "SCALED_IMU", "RAW_IMU", "HIGHRES_IMU")
+SAMPLE_MESSAGES: Final = (
+    *("TILT_SAMPLE", "TILT_STATE", "ATTITUDE"),
+    *("SCALED_IMU", "RAW_IMU", "HIGHRES_IMU"),
+)
 """Messages that go out with a sample, in the order in which they are sent."""
 TIMED_MESSAGES: Final = ("SYS_STATUS", "HEARTBEAT")
 """Messages that go out by the clock."""

@@ -43,13 +43,17 @@ def render_target(
         If the design or the options do not fit the target.
     """
     context = render_context(design, target, options, cells=cells)
-    folders = (*target.folders, _filter_folder(design, context.options))
+    folders = (*target.folders, *_filter_folders(design, target, context.options))
     return _sorted_unique(render_folders(context, folders))
 
 
-def _filter_folder(design: FilterDesign, options: FirmwareOptions) -> str:
-    """Return the folder of the filter in the arithmetic that was asked for."""
-    return f"{design.filter}_float" if options.arithmetic == "float" else design.filter
+def _filter_folders(
+    design: FilterDesign, target: Target, options: FirmwareOptions
+) -> tuple[str, ...]:
+    """Return the folder of the filter, and that of what filters in integers share."""
+    if options.arithmetic == "float":
+        return (f"{design.filter}_float",)
+    return ("fixed", design.filter) if target.kind == "mcu" else (design.filter,)
 
 
 def generate(

@@ -8,7 +8,7 @@ import pytest
 
 from hostkit.fixedpoint import shift_round
 
-FIXED = Path(__file__).resolve().parents[2] / "firmware_templates" / "complementary"
+FIXED = Path(__file__).resolve().parents[2] / "firmware_templates" / "fixed"
 RAWS = (2**16, 2**16 + 1, 3 * 2**15, 2**17 - 2, 2**17 - 1)
 
 

@@ -37,7 +37,54 @@ def test_defaults_send_every_sample_and_half_of_the_attitudes() -> None:
         "SYS_STATUS": 1_000_000,
         "HEARTBEAT": 1_000_000,
     }
+    assert [m.name for m in plan.messages] == [n for n in STREAMED_MESSAGES if n != "TILT_STATE"]
+
+
+@pytest.mark.parametrize("words", [3, 17, 24])
+def test_a_long_state_goes_out_once_a_second_behind_a_sample(words: int) -> None:
+    plan = link_plan(100.0, AVR, hidden_words=words)
+    sample, state, *_ = plan.messages
     assert tuple(m.name for m in plan.messages) == STREAMED_MESSAGES
+    assert (state.every, state.interval_us) == (100, 1_000_000)
+    assert sample.frame_bytes == 43 + 12
+    assert state.frame_bytes == 4 + 4 * words + 12
+    assert plan.state_words == words
+    assert plan.bytes_per_s == link_plan(100.0, AVR).bytes_per_s + state.frame_bytes
+
+
+@pytest.mark.parametrize(("words", "told"), [(0, 0), (2, 0), (3, 3)])
+def test_a_state_that_a_sample_has_room_for_has_no_message(words: int, told: int) -> None:
+    plan = link_plan(100.0, AVR, hidden_words=words)
+    assert plan.state_words == told
+    assert ("TILT_STATE" in [m.name for m in plan.messages]) == bool(told)
+    assert plan.every("TILT_STATE") == (100 if told else 0)
+
+
+@pytest.mark.parametrize(
+    ("sample_hz", "state_hz", "every"),
+    [(25.0, None, 100), (100.0 / 7, None, 98), (25.0, 100.0, 4), (0.0, None, 0), (100.0, 0.0, 0)],
+)
+def test_a_state_keeps_to_the_samples_that_go_out(
+    sample_hz: float, state_hz: float | None, every: int
+) -> None:
+    chosen = {"TILT_SAMPLE": sample_hz} | ({} if state_hz is None else {"TILT_STATE": state_hz})
+    plan = link_plan(100.0, AVR, rates(**chosen), hidden_words=17)
+    assert plan.every("TILT_STATE") == every
+
+
+def test_a_state_without_samples_is_refused_and_so_is_one_that_there_is_not() -> None:
+    with pytest.raises(RenderError, match="TILT_STATE = 1 Hz, but TILT_SAMPLE is off"):
+        link_plan(100.0, AVR, rates(TILT_SAMPLE=0.0, TILT_STATE=1.0), hidden_words=17)
+    with pytest.raises(RenderError, match="has no TILT_STATE: each TILT_SAMPLE tells"):
+        link_plan(100.0, AVR, rates(TILT_STATE=1.0), hidden_words=2)
+
+
+def test_the_link_must_carry_the_states_too() -> None:
+    slow = rates(TILT_SAMPLE=25.0, ATTITUDE=0.0, TILT_STATE=25.0)
+    options = dataclasses.replace(slow, baud=31_250)
+    assert link_plan(100.0, AVR, dataclasses.replace(options, baud=62_500), hidden_words=17)
+    with pytest.raises(RenderError, match=r"TILT_STATE 2100,"):
+        link_plan(100.0, AVR, options, hidden_words=17)
 
 
 def test_every_message_costs_its_frame_and_signing_13_bytes_more() -> None:

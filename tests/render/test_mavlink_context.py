@@ -43,3 +43,12 @@ def test_a_payload_that_cannot_be_numbered_is_refused() -> None:
             payload_bytes=52,
             fields=(),
         )
+
+
+def test_a_state_is_laid_out_for_the_words_that_are_told() -> None:
+    context = mavlink_context(IDENTITIES["gcs"], 1, (), state_words=17)
+    assert context.tells_state
+    assert (context.state_words, context.state.payload_bytes) == (17, 4 + 4 * 17)
+    assert [field.offset for field in context.state.fields] == [0, 4]
+    assert context.sample.payload_bytes == 43
+    assert not mavlink_context(IDENTITIES["gcs"], 1, ()).tells_state

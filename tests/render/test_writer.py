@@ -4,11 +4,12 @@ from pathlib import Path
 import pytest
 from designs import all_parameters, design
 
-from hostkit.dialect import HIDDEN_WORDS, python_module
+from hostkit.dialect import HIDDEN_WORDS, STATE_WORDS, python_module
 from hostkit.errors import HostkitError, RenderError
 from hostkit.render import generate, read_manifest, stale_files, target_of, write
 from hostkit.render.context import render_context
 from hostkit.render.link_plan import link_plan
+from hostkit.spec import SAMPLE_HIDDEN_WORDS
 from hostkit.targets import TARGETS
 
 
@@ -102,15 +103,16 @@ def test_the_link_budget_counts_the_hidden_state_only_where_there_is_one() -> No
 
 
 def test_more_hidden_state_than_a_message_carries_is_refused() -> None:
-    with pytest.raises(RenderError, match=r"has 3 words of state .* carries 2"):
-        link_plan(100.0, TARGETS["host"], hidden_words=3)
+    with pytest.raises(RenderError, match=r"has 25 words of state .* carries 24"):
+        link_plan(100.0, TARGETS["host"], hidden_words=25)
 
 
 def test_the_dialect_has_the_hidden_words_that_the_link_plan_counts_on() -> None:
     message = python_module().MAVLink_tilt_sample_message
     field = message.ordered_fieldnames.index("hidden")
     assert field == len(message.ordered_fieldnames) - 1
-    assert message.array_lengths[field] == HIDDEN_WORDS
+    assert message.array_lengths[field] == HIDDEN_WORDS == SAMPLE_HIDDEN_WORDS
+    assert python_module().MAVLink_tilt_state_message.array_lengths == [0, STATE_WORDS]
 
 
 def test_link_that_is_too_slow_is_refused_with_the_budget() -> None:

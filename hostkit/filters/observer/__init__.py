@@ -1,1 +1,74 @@
 """The bounded-velocity observer of orientation."""
+
+from hostkit.filters.filter import Filter, RunTime
+from hostkit.filters.observer.context import filter_context
+from hostkit.filters.observer.facts import facts
+from hostkit.filters.observer.float_model import run_float
+from hostkit.filters.observer.integer_model import run_integer, step_integer
+from hostkit.filters.observer.lowering import lower
+from hostkit.filters.observer.parameters import (
+    BIAS_LIMIT_RAD_S,
+    BY_NAME,
+    KINDS,
+    SENSOR_AXES,
+    ParameterKind,
+    default_parameters,
+    parameter,
+    parameters,
+)
+from hostkit.filters.observer.run_time import (
+    RUN_TIME,
+    device_parameters,
+    known_parameters,
+    limits,
+    told_by_device,
+    with_told,
+)
+from hostkit.filters.observer.setting_words import setting_words
+from hostkit.filters.observer.settings import Settings, settings
+from hostkit.filters.observer.spec import ObserverSpec
+
+__all__ = [
+    "BIAS_LIMIT_RAD_S",
+    "BY_NAME",
+    "KINDS",
+    "OBSERVER",
+    "RUN_TIME",
+    "SENSOR_AXES",
+    "ObserverSpec",
+    "ParameterKind",
+    "Settings",
+    "default_parameters",
+    "device_parameters",
+    "facts",
+    "filter_context",
+    "known_parameters",
+    "limits",
+    "lower",
+    "parameter",
+    "parameters",
+    "run_float",
+    "run_integer",
+    "setting_words",
+    "settings",
+    "step_integer",
+    "told_by_device",
+    "with_told",
+]
+
+OBSERVER: Filter[ObserverSpec] = Filter(
+    name="observer",
+    title="bounded-velocity observer",
+    lower=lower,
+    run_float=run_float,
+    run_integer=run_integer,
+    step_integer=step_integer,
+    run_time=RunTime(
+        known=known_parameters(),
+        parameters=device_parameters,
+        with_told=with_told,
+    ),
+    facts=facts,
+    context=filter_context,
+    setting_words=setting_words,
+)

@@ -27,10 +27,10 @@ Around that step stand four things that a design may leave out:
 - *Start.* The first sample's force is up. Then each correction has a share of the tilt that the
   force shows, d += alpha / g (a_y, -a_x), with alpha falling as 1 / n, which is a mean that turns
   with the body: alpha <- alpha - alpha^2 from 1/2 until it is below dt / start. The velocity keeps
-  1 - alpha of itself.
+  1 - alpha of itself. After a rate that was clipped alpha is CLIP_GAIN again, if it is less.
 - *Rest.* Running means of rate and force that no reading left for REST_TIME_S, and a mean rate
   that can be a bias, are rest: then the bias follows the rate, b <- b + rest_gain (w - b) dt,
-  instead of the velocity.
+  instead of the velocity. The first rest takes the mean rate for the bias and starts again.
 - *Lead.* The up direction u is told as u - lead (w - b) x u.
 - *Calibration*: w = (1 + gyro_scale) gyro, f = (1 + accel_scale) (accel - accel_offset), and b
   starts from (1 + gyro_scale) gyro_bias.
@@ -45,6 +45,9 @@ from numpy.typing import NDArray
 from hostkit.attitude import pitch_from_up, roll_from_up, to_body
 from hostkit.filters.observer.limits import (
     ACCELERATION_LIMIT_M_S2,
+    CLIP_GAIN,
+    FIRST_FORCE_G,
+    FIRST_ROUNDS,
     LEAD_LIMIT_RAD,
     START_GAIN,
     START_LIMIT_RAD,
@@ -74,10 +77,11 @@ class _State:
     force_mean: list[float]
     start_gain: float
     still_s: float
+    rested: float
 
     def row(self) -> list[float]:
         lists = self.quaternion, self.velocity, self.bias, self.rate_mean, self.force_mean
-        return [*(x for part in lists for x in part), self.start_gain, self.still_s]
+        return [*(x for part in lists for x in part), self.start_gain, self.still_s, self.rested]
 
 
 def run_float(
@@ -99,7 +103,7 @@ def run_float(
     numpy.ndarray
         States, shape ``(N, S)``: the angles of the design's axes (rad), then the quaternion (4),
         the velocity (m/s, 2), the bias (rad/s, 3), the running means of rate (rad/s, 3) and force
-        (m/s^2, 3), the weight of the start and the time at rest (s).
+        (m/s^2, 3), the weight of the start, the time at rest (s), and 1 after the first rest.
 
     Raises
     ------
@@ -134,6 +138,7 @@ class _Step:
         self.rest_s = rest_samples(period_s) * period_s
         self.velocity_limit = correction_limit_rad(period_s) / (own.kt_rad_m * period_s)
         self.start_end = start_end(own.start_s, period_s)
+        self.start_gain = START_GAIN if self.start_end < START_GAIN else 0.0
 
     def load(self, rate: list[float], force: list[float]) -> _State:
         """Return the state after the first sample: its specific force is up."""
@@ -144,14 +149,19 @@ class _Step:
             bias=[(1.0 + s) * b for s, b in zip(cal.gyro_scale, cal.gyro_bias_rad_s, strict=True)],
             rate_mean=list(rate) if self.own.rest else [0.0] * 3,
             force_mean=list(force) if self.own.rest else [0.0] * 3,
-            start_gain=START_GAIN if self.start_end <= START_GAIN else 0.0,
+            start_gain=self.start_gain,
             still_s=0.0,
+            rested=0.0,
         )
 
     def take(self, state: _State, rate: list[float], force: list[float]) -> list[float]:
         """Take one sample; return the rate less its bias."""
         at_rest = self._rest(state, rate, force)
         scale = self.own.calibration.gyro_scale
+        if at_rest and state.rested == 0.0:
+            self._first_rest(state)
+        if max(abs(w) for w in rate) > (self.own.clip_rate_rad_s or math.inf):
+            state.start_gain = max(state.start_gain, CLIP_GAIN)
         turn = [(1.0 + scale[i]) * rate[i] - state.bias[i] for i in XYZ]
         state.quaternion = _propagated(state.quaternion, [0.5 * self.period_s * w for w in turn])
         x_row, y_row = _rows(state.quaternion)
@@ -185,6 +195,15 @@ class _Step:
         state.still_s = min(state.still_s + self.period_s, self.rest_s) if quiet else 0.0
         return state.still_s > self.rest_s - 0.5 * self.period_s
 
+    def _first_rest(self, state: _State) -> None:
+        """Take the mean rate for the bias, and align again."""
+        scale = self.own.calibration.gyro_scale
+        state.bias = [
+            _clamped((1.0 + scale[i]) * state.rate_mean[i], BIAS_LIMIT_RAD_S) for i in XYZ
+        ]
+        state.start_gain = self.start_gain
+        state.rested = 1.0
+
     def _acceleration(
         self, rows: tuple[list[float], list[float]], force: list[float]
     ) -> tuple[float, float]:
@@ -206,9 +225,9 @@ class _Step:
         alpha = state.start_gain
         if alpha == 0.0:
             return 0.0, 0.0
-        state.velocity = [(1.0 - alpha) * v for v in state.velocity]
         after = alpha - alpha * alpha
-        state.start_gain = after if after >= self.start_end else 0.0
+        state.start_gain = after if after > self.start_end else 0.0
+        state.velocity = [(1.0 - state.start_gain) * v for v in state.velocity]
         x, y = (_clamped(alpha * a / STANDARD_GRAVITY_M_S2, START_LIMIT_RAD) for a in accel)
         return y, -x
 
@@ -226,14 +245,12 @@ def _follow(mean: list[float], reading: list[float], weight: float) -> float:
 
 
 def _upright(force: list[float]) -> list[float]:
-    """Return the shortest turn that lays a specific force upwards, or one that does."""
-    x, y, z = force
-    size = math.hypot(x, y, z)
-    if size == 0.0:
-        return [1.0, 0.0, 0.0, 0.0]
-    found = [size + z, y, -x, 0.0] if z >= 0.0 else [y, size - z, 0.0, x]
-    length = math.hypot(*found)
-    return [part / length for part in found]
+    """Return the turn that lays a specific force upwards, nearly so where it is not 1 g."""
+    x, y, z = (_clamped(f / STANDARD_GRAVITY_M_S2, FIRST_FORCE_G) / 2.0 for f in force)
+    q = [0.5 + z, y, -x, 0.0] if z >= 0.0 else [y, 0.5 - z, 0.0, x]
+    for _ in range(FIRST_ROUNDS):
+        q = _normalised(q)
+    return q
 
 
 def _propagated(q: list[float], h: list[float]) -> list[float]:
@@ -297,4 +314,5 @@ def _state_of(words: list[float]) -> _State:
         force_mean=words[12:15],
         start_gain=words[15],
         still_s=words[16],
+        rested=words[17],
     )

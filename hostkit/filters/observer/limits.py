@@ -27,6 +27,15 @@ REST_TIME_S: Final = 1.0
 START_GAIN: Final = 0.5
 """First weight of the alignment at the start; it falls as one over the number of samples."""
 
+CLIP_GAIN: Final = 2.0**-5
+"""Least weight of the alignment after a rate that was clipped."""
+
+FIRST_FORCE_G: Final = 1.2
+"""Largest specific force of the first sample that is believed, on each axis."""
+
+FIRST_ROUNDS = 6
+"""Renormalisations of the first orientation, whose length is 0.5 to 1.39."""
+
 
 def correction_limit_rad(period_s: float) -> float:
     """Return the largest correction of one sample that a velocity asks for."""

@@ -29,6 +29,7 @@ ParameterName = Literal[
     "rest_rate",
     "rest_force",
     "rest_gain",
+    "clip_rate",
     "lead",
     "gyro_bias",
     "gyro_scale",
@@ -98,7 +99,7 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="rad/m",
         lowest=1e-4,
         highest=16.0,
-        default=0.02,
+        default=0.0177,
         required=True,
         shown_unit="rad/m",
         title="tilt gain: rate of correction per velocity",
@@ -108,7 +109,7 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="1/s",
         lowest=1e-3,
         highest=100.0,
-        default=0.35,
+        default=0.375,
         required=True,
         shown_unit="1/s",
         title="decay of the velocity",
@@ -118,7 +119,7 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="1/s",
         lowest=0.0,
         highest=1.0,
-        default=0.017,
+        default=0.011,
         required=True,
         shown_unit="1/s",
         title="bias gain",
@@ -137,7 +138,7 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="rad/s",
         lowest=1e-4,
         highest=0.5,
-        default=0.025,
+        default=0.03,
         shown_unit="deg/s",
         shown_per_unit=DEG_PER_RAD,
         title="rest: largest deviation of the rate",
@@ -147,7 +148,7 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="m/s^2",
         lowest=1e-3,
         highest=20.0,
-        default=0.25,
+        default=0.3,
         shown_unit="m/s^2",
         title="rest: largest deviation of the specific force",
     ),
@@ -156,9 +157,19 @@ KINDS: Final[tuple[ParameterKind, ...]] = (
         unit="1/s",
         lowest=1e-3,
         highest=5.0,
-        default=0.4,
+        default=0.5,
         shown_unit="1/s",
         title="rest: gain of the bias",
+    ),
+    ParameterKind(
+        name="clip_rate",
+        unit="rad/s",
+        lowest=0.1,
+        highest=70.0,
+        default=34.0,
+        shown_unit="deg/s",
+        shown_per_unit=DEG_PER_RAD,
+        title="rate beyond which the gyroscope is clipped",
     ),
     ParameterKind(
         name="lead",
@@ -240,8 +251,8 @@ def parameters(*chosen: Parameter) -> tuple[Parameter, ...]:
 
 def default_parameters() -> tuple[Parameter, ...]:
     """Return what suits an ordinary sensor: gains, start and rest detection."""
-    own = [k for k in KINDS if not k.per_axis and k.neutral is None]
-    return parameters(*(parameter(kind.name, kind.default) for kind in own))
+    names: tuple[ParameterName, ...] = ("start", "rest_rate", "rest_force", "rest_gain")
+    return parameters(*(parameter(name, BY_NAME[name].default) for name in names))
 
 
 def checked_value(design: FilterDesign, kind: ParameterKind, key: str) -> float | None:

@@ -61,6 +61,8 @@ class Settings:
         Longest memory of the alignment at the start; None where the first sample alone aligns.
     rest
         None where rest is not looked for.
+    clip_rate_rad_s
+        Rate beyond which the gyroscope is clipped; None where that is not looked at.
     lead_s
         How far the angles are told ahead; negative for back.
     """
@@ -70,6 +72,7 @@ class Settings:
     kb_per_s: float
     start_s: float | None
     rest: Rest | None
+    clip_rate_rad_s: float | None
     lead_s: float
     calibration: Calibration
 
@@ -100,6 +103,7 @@ def settings(design: FilterDesign) -> Settings:
         kb_per_s=_required(design, "kb"),
         start_s=_value(design, "start"),
         rest=_rest(design),
+        clip_rate_rad_s=_value(design, "clip_rate"),
         lead_s=_value(design, "lead") or 0.0,
         calibration=Calibration(
             gyro_bias_rad_s=_triple(design, "gyro_bias"),
