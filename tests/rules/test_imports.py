@@ -18,7 +18,7 @@ FLOORS = (
     ("render",),
     ("dialect", "targets"),
     ("fleet", "reproduction"),
-    ("tuning",),
+    ("tuning", "smoothing"),
     ("filters",),
     ("optimisers",),
     ("diagnosis",),
