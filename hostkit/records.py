@@ -169,6 +169,22 @@ class GeneratedFile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ToldState:
+    """The hidden words that a device told of its state after one sample.
+
+    Attributes
+    ----------
+    sequence
+        Counter of that sample.
+    words_raw
+        The words, in the order of the spec.
+    """
+
+    sequence: int
+    words_raw: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AngleTrace:
     """What a device said, sample by sample.
 
@@ -182,12 +198,16 @@ class AngleTrace:
         Raw counts in sensor axes, shape ``(N, 3)``.
     state_raw
         State of the filter after the sample, shape ``(N, S)``: the angles of the design's axes in
-        half turns, then the hidden words.
+        half turns, then the hidden words; the angles only, shape ``(N, A)``, of a filter that
+        tells its state in messages of their own.
     restarted
         True where the filter loaded the measured tilt instead of stepping, shape ``(N,)``.
     retuned
         True where the device says that a parameter in use is not the design's, shape ``(N,)``;
         None where nothing says so.
+    told
+        States that the device told beside its samples, in the order in which they came; their
+        samples may be others than those of this trace.
     """
 
     sequence: NDArray[np.int64]
@@ -197,6 +217,7 @@ class AngleTrace:
     state_raw: NDArray[np.int64]
     restarted: NDArray[np.bool_]
     retuned: NDArray[np.bool_] | None = None
+    told: tuple[ToldState, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -209,6 +230,19 @@ class AngleTrace:
 
     def __len__(self) -> int:
         return len(self.sequence)
+
+    def part(self, which: slice | NDArray[np.bool_]) -> "AngleTrace":
+        """Return some of the samples, with all that was told beside them."""
+        return AngleTrace(
+            sequence=self.sequence[which],
+            time_us=self.time_us[which],
+            accel_count=self.accel_count[which],
+            gyro_count=self.gyro_count[which],
+            state_raw=self.state_raw[which],
+            restarted=self.restarted[which],
+            retuned=None if self.retuned is None else self.retuned[which],
+            told=self.told,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -263,7 +297,12 @@ class ValidationReport:
         from the float model than its tolerance.
     unjudged
         Samples that no model could follow: every so many-th only is sent, or the parameters in
-        use were not known.
+        use or the state of the filter were not known.
+    waiting
+        Those of them that came while only the state was not known: after a gap until the device
+        told it.
+    longest_wait_s
+        The longest time that it was not known.
     stride
         Greatest step of the sample counter that the device kept to on purpose; 1 where it sends
         every sample.
@@ -292,6 +331,8 @@ class ValidationReport:
     late: int = 0
     repeated: int = 0
     unjudged: int = 0
+    waiting: int = 0
+    longest_wait_s: float = 0.0
     stride: int = 1
     tolerance_rad: float | None = None
     untold: tuple[str, ...] = field(default=())

@@ -5,16 +5,10 @@ import numpy as np
 from hostkit.design_file import digest
 from hostkit.dialect import python_module
 from hostkit.filters import FILTERS
-from hostkit.filters.complementary import RUN_TIME, with_told
 from hostkit.records import AXES, FilterDesign
 from hostkit.validation import device_parameters
-from hostkit.validation.retuning import link_name
 
 COLUMN = {"roll": 0, "pitch": 1}
-
-
-def in_order_of_device(told: dict[str, float]) -> tuple[float, ...]:
-    return tuple(told.get(link_name(item), 0.0) for item in RUN_TIME)
 
 
 class Device:
@@ -71,7 +65,7 @@ class Device:
                 told[name] = float(np.float32(value))
                 frames.append(self.told(name, told[name]))
             if k in changes:
-                used = with_told(self.design, in_order_of_device(told))
+                used = filter_.run_time.with_told(self.design, told)
             spec, one = filter_.lower(used), slice(k, k + 1)
             if restarts:
                 state = filter_.run_integer(spec, accel[one], gyro[one])

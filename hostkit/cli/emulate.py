@@ -184,6 +184,7 @@ def emulation_document(
         "mismatches": None if in_float else result.mismatches,
         "beyond_tolerance": result.mismatches if in_float else None,
         "tolerance_rad": result.tolerance_rad,
+        "states_told": result.states_told,
         "max_abs_error_deg": None if error is None else math.degrees(error),
         "cycles_per_update": {
             "mean": result.cycles_mean,

@@ -117,7 +117,7 @@ def _measured(design: FilterDesign, target: Target, options: Options) -> tuple[C
     if target.kind != "fpga":
         raise click.UsageError(f"{target.name} is no FPGA; it takes no --synthesise")
     say(f"{target.name}: synthesising, which takes minutes")
-    return measure(render_all(design, target, options), target)
+    return measure(render_all(design, target, options), target, design)
 
 
 def _link_document(link: LinkPlan) -> dict[str, object]:

@@ -19,7 +19,7 @@ from hostkit.emulation.fault_report import (
 )
 from hostkit.filters import FILTERS
 from hostkit.link.frames.decoder import Frame
-from hostkit.records import AXES, AngleTrace, FilterDesign, read_only
+from hostkit.records import AXES, AngleTrace, FilterDesign, ToldState, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
 from hostkit.targets import Target
@@ -43,7 +43,10 @@ class EmulationResult:
         Samples that came back, and samples that were to come and did not.
     mismatches
         Samples whose raw counts differ, or whose state: from the integer model in any bit, or,
-        with a tolerance, from the float model by more.
+        with a tolerance, from the float model by more. A state that was told of a sample beside
+        it counts with it, or by itself where that sample did not come back.
+    states_told
+        How many states were told beside the samples; None of a filter whose samples have it all.
     residual_rad
         Device minus float model, shape ``(samples, A)``.
     cycles_mean, cycles_max
@@ -74,6 +77,7 @@ class EmulationResult:
     fault_report: FaultReport | None = None
     cost_unit: str = "cycles"
     tolerance_rad: float | None = None
+    states_told: int | None = None
 
     def __post_init__(self) -> None:
         """Make the array read-only."""
@@ -107,6 +111,8 @@ class Answer:
         Only every so many-th row was to come, from the first on.
     tolerance_rad
         As in :class:`EmulationResult`.
+    told
+        States that came beside the samples; their counters are rows.
     """
 
     row: IntArray
@@ -119,6 +125,7 @@ class Answer:
     cost_unit: str = "cycles"
     every: int = 1
     tolerance_rad: float | None = None
+    told: tuple[ToldState, ...] = ()
 
 
 def compare(
@@ -132,7 +139,8 @@ def compare(
         What the sensor gives for the recording.
     """
     filter_, part = FILTERS[design.filter], SENSORS[design.sensor.part]
-    wanted = filter_.run_integer(filter_.lower(design), counts.accel, counts.gyro)
+    spec = filter_.lower(design)
+    wanted = filter_.run_integer(spec, counts.accel, counts.gyro)
     axes = len(AXES[design.axes])
     exact = filter_.run_float(design, *to_rate_and_force_g(part, design.sensor, counts))[:, :axes]
     inside = (answer.row >= 0) & (answer.row < len(counts))
@@ -145,11 +153,14 @@ def compare(
         | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
     )
     expected = np.arange(0, len(counts), answer.every)
+    places = np.arange(len(counts)), answer.row
+    alone = 0 if answer.tolerance_rad else _mark_told(answer.told, wanted[:, axes:], places, wrong)
     return EmulationResult(
         target=target.name,
         samples=len(answer.row),
         missing=len(np.setdiff1d(expected, answer.row)),
-        mismatches=int(wrong.sum()),
+        mismatches=int(wrong.sum()) + alone,
+        states_told=len(answer.told) if spec.tells_state else None,
         residual_rad=residual,
         cycles_mean=answer.cycles_mean,
         cycles_max=answer.cycles_max,
@@ -184,11 +195,15 @@ def compare_with_faults(
     residual = _residual_rad(trace.state_raw, exact)
     wrong = _state_wrong(trace.state_raw, wanted, residual, tolerance_rad)
     wrong |= (row < 0) & ~repeated
+    axes = exact.shape[1]
+    places = trace.sequence, trace.sequence
+    alone = 0 if tolerance_rad else _mark_told(trace.told, wanted[:, axes:], places, wrong)
     return EmulationResult(
         target=target.name,
         samples=len(trace),
         missing=len(counts) - int((row >= 0).sum()),
-        mismatches=int(wrong.sum()),
+        mismatches=int(wrong.sum()) + alone,
+        states_told=len(trace.told) if FILTERS[design.filter].lower(design).tells_state else None,
         residual_rad=residual,
         cycles_mean=run.cycles_mean,
         cycles_max=run.cycles_max,
@@ -217,6 +232,38 @@ def _residual_rad(state_raw: IntArray, exact: Vector) -> Vector:
 def _state_wrong(
     state_raw: IntArray, wanted: IntArray, residual_rad: Vector, tolerance_rad: float | None
 ) -> BoolArray:
-    """Tell which states are not the model's: in any bit, or by more than the tolerance."""
+    """Tell which states are not the model's: in any bit, or by more than the tolerance.
+
+    They may be the angles only.
+    """
+    wanted = wanted[:, : state_raw.shape[1]]
     differ = state_raw != wanted if tolerance_rad is None else np.abs(residual_rad) > tolerance_rad
     return np.asarray(differ.any(axis=1))
+
+
+def _mark_told(
+    told: tuple[ToldState, ...],
+    wanted: IntArray,
+    places: tuple[IntArray, IntArray],
+    wrong: BoolArray,
+) -> int:
+    """Mark samples whose told state is wrong; return how many states were wrong without one.
+
+    Parameters
+    ----------
+    wanted
+        Hidden words of the model, shape ``(M, W)``.
+    places
+        Counters of its rows, shape ``(M,)``, and those of the samples, shape ``(N,)``. A device
+        that started anew has a counter more than once; its state must be that of one of them.
+    wrong
+        Of the samples, shape ``(N,)``; changed.
+    """
+    of_model, of_samples = places
+    alone = 0
+    for state in told:
+        if not (wanted[of_model == state.sequence] == state.words_raw).all(axis=1).any():
+            of_sample = np.flatnonzero(of_samples == state.sequence)
+            wrong[of_sample[-1:]] = True
+            alone += not len(of_sample)
+    return alone

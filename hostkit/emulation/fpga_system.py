@@ -13,6 +13,7 @@ from hostkit.emulation.run import answer_of, heard_of, stimulus_of
 from hostkit.emulation.system_bench import SystemRun, SystemTiming, run_system
 from hostkit.emulation.system_faults import Generics, fault_generics
 from hostkit.errors import EmulationError
+from hostkit.filters import FILTERS
 from hostkit.link.frames.decoder import Decoder
 from hostkit.link.logs.tlog import TlogWriter
 from hostkit.recordings import Recording
@@ -26,12 +27,16 @@ IntArray = NDArray[np.int64]
 
 SHORTEST_US = 1250
 """Reading and checking the sensor takes 1.2 ms at most with the slow clock of the bench."""
+SHORTEST_WITH_STATE_US = 1500
+"""Two samples must take longer than one frame of a sample, one of a state, and a reading."""
 US_PER_S = 1e6
 
 
 def timing_of(design: FilterDesign) -> SystemTiming:
     """Return a timing in which a sample of a design takes few clocks."""
-    fitting = max(1, round(US_PER_S * design.period_s) // SHORTEST_US)
+    tells_state = FILTERS[design.filter].lower(design).tells_state
+    shortest_us = SHORTEST_WITH_STATE_US if tells_state else SHORTEST_US
+    fitting = max(1, round(US_PER_S * design.period_s) // shortest_us)
     return SystemTiming(time_divisor=2 ** (fitting.bit_length() - 1))
 
 

@@ -21,7 +21,7 @@ from hostkit.emulation.hdl_vectors import (
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, EmulationError
 
-BENCH = "hk_complementary_tb"
+BENCH = "hk_filter_tb"
 BUILD = "build"
 """Folder below the generated one that holds GHDL's library and the elaborated bench."""
 

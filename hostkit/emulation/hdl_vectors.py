@@ -2,19 +2,23 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.errors import EmulationError
+from hostkit.filters import FILTERS
 from hostkit.fixedpoint import wrap32
-from hostkit.records import Axis, read_only
+from hostkit.records import Axis, FilterDesign, read_only
 from hostkit.spec import FixedPointSpec
 
 _DIGEST = re.compile(r"[0-9a-f]{12}")
-_RESULT = re.compile(r"([0-9a-f]{4}) ((?:[0-9a-f]{8} ){4})([01]) ([01]) (\d+) (\d+)")
+_RESULT = re.compile(r"([0-9a-f]{4}) ((?:[0-9a-f]{8} ){2,})([01]) ([01]) (\d+) (\d+)")
+
+LEAST_WORDS = 7
+"""Of a result without hidden words."""
 
 COLUMN: dict[Axis, int] = {"roll": 0, "pitch": 1}
 
@@ -23,48 +27,24 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HdlSettings:
-    """What may change in the core at run time, in the order of its record ``hk_settings_t``.
+    """What may change in the core at run time.
 
     Attributes
     ----------
-    blend, rate_gain_roll, rate_gain_pitch, integral_gain
-        Raw coefficients, in the formats of the design.
-    tilt_offset_roll, tilt_offset_pitch
-        Half turns.
-    gyro_bias_roll, gyro_bias_pitch
-        Half turns per sample; with an integral where they start, with its fraction bits.
-    gate_lowest, gate_highest
-        Sums of squared counts.
+    names, words
+        Elements of the core's record ``hk_settings_t`` in its order, and their raw values.
     """
 
-    blend: int
-    rate_gain_roll: int
-    rate_gain_pitch: int
-    integral_gain: int = 0
-    tilt_offset_roll: int = 0
-    tilt_offset_pitch: int = 0
-    gyro_bias_roll: int = 0
-    gyro_bias_pitch: int = 0
-    gate_lowest: int = 0
-    gate_highest: int = 0
+    names: tuple[str, ...]
+    words: tuple[int, ...]
 
 
-def hdl_settings(spec: FixedPointSpec) -> HdlSettings:
-    """Return the settings of a spec; those of an axis that it lacks do nothing."""
-    gain = {axis: spec.rate_gains[i].raw for i, axis in enumerate(spec.axes)}
-    offset = dict(zip(spec.axes, spec.tilt_offset_raw, strict=True))
-    bias = dict(zip(spec.axes, spec.gyro_bias_raw, strict=True))
+def hdl_settings(design: FilterDesign, spec: FixedPointSpec) -> HdlSettings:
+    """Return the settings of a spec of a design; those that it lacks do nothing."""
+    settings = FILTERS[spec.filter].setting_words(design, spec)
     return HdlSettings(
-        blend=spec.blend.raw,
-        rate_gain_roll=gain.get("roll", 0),
-        rate_gain_pitch=gain.get("pitch", 0),
-        integral_gain=0 if spec.integral is None else spec.integral.gain.raw,
-        tilt_offset_roll=offset.get("roll", 0),
-        tilt_offset_pitch=offset.get("pitch", 0),
-        gyro_bias_roll=bias.get("roll", 0),
-        gyro_bias_pitch=bias.get("pitch", 0),
-        gate_lowest=0 if spec.gate is None else spec.gate.lowest,
-        gate_highest=0 if spec.gate is None else spec.gate.highest,
+        names=tuple(setting.name for setting in settings),
+        words=tuple(setting.raw or 0 for setting in settings),
     )
 
 
@@ -81,7 +61,8 @@ class HdlRun:
     angle_raw
         Roll and pitch in half turns, shape ``(N, 2)``; an axis that the design lacks is 0.
     hidden_raw
-        The hidden word of each of them, shape ``(N, 2)``; 0 where the design has none.
+        The words that the core shows beside them, shape ``(N, H)``: those of its ports of hidden
+        words, 0 where the design has none for it, or its whole state.
     restarted
         True where the core loaded the measured tilt instead of stepping, shape ``(N,)``.
     saturated
@@ -110,9 +91,17 @@ class HdlRun:
 
     def state_raw(self, spec: FixedPointSpec) -> IntArray:
         """Return the states as the integer model of a design has them, shape ``(N, S)``."""
-        columns = [COLUMN[axis] for axis in spec.axes]
-        words = (self.angle_raw[:, columns], self.hidden_raw[:, columns])
-        return np.hstack(words)[:, : len(spec.axes) + len(spec.hidden)]
+        angles = self.angle_raw[:, [COLUMN[axis] for axis in spec.axes]]
+        return np.hstack([angles, self.hidden_raw[:, list(_hidden_columns(spec))]])
+
+
+def _hidden_columns(spec: FixedPointSpec) -> tuple[int, ...]:
+    """Return which of the words that the core shows is which hidden word of the spec."""
+    if spec.tells_state:
+        return tuple(range(len(spec.hidden)))
+    core = FILTERS[spec.filter].core
+    words = () if core is None else [port.word for port in core.facts(spec, False).hidden_ports]
+    return tuple(words.index(word) for word in range(len(spec.hidden)))
 
 
 def vector_text(
@@ -135,7 +124,7 @@ def vector_text(
     words = np.column_stack([channel, counts & 0xFFFF]).tolist()
     lines = [" ".join(f"{word:04x}" for word in row) + "\n" for row in words]
     for index, values in settings.items():
-        raw = (value & 0xFFFFFFFF for value in astuple(values))
+        raw = (value & 0xFFFFFFFF for value in values.words)
         lines[index] = "s " + " ".join(f"{word:08x}" for word in raw) + "\n" + lines[index]
     return "".join(lines)
 
@@ -158,16 +147,19 @@ def parsed_results(results: Path, samples: int) -> HdlRun:
         raise EmulationError(f"the simulation's results begin with {digest[:40]!r}, not a digest")
     if len(lines) != samples:
         raise EmulationError(f"the simulation wrote {len(lines)} results for {samples} samples")
-    rows = np.array([_parsed_line(line) for line in lines], dtype=np.int64).reshape(-1, 9)
+    parsed = [_parsed_line(line) for line in lines]
+    if len({len(row) for row in parsed}) > 1:
+        raise EmulationError("the simulation's results differ in their numbers of words")
+    rows = np.array(parsed, dtype=np.int64).reshape(len(lines), -1 if lines else LEAST_WORDS)
     return HdlRun(
         design_digest=digest,
         channel=rows[:, 0].copy(),
         angle_raw=wrap32(rows[:, 1:3]),
-        hidden_raw=wrap32(rows[:, 3:5]),
-        restarted=rows[:, 5] == 1,
-        saturated=rows[:, 6] == 1,
-        taken_cycle=rows[:, 7].copy(),
-        latency_cycles=rows[:, 8].copy(),
+        hidden_raw=wrap32(rows[:, 3:-4]),
+        restarted=rows[:, -4] == 1,
+        saturated=rows[:, -3] == 1,
+        taken_cycle=rows[:, -2].copy(),
+        latency_cycles=rows[:, -1].copy(),
     )
 
 

@@ -229,6 +229,7 @@ def answer_of(run: BoardRun, target: Target, design: FilterDesign) -> Answer:
         row=trace.sequence,
         counts=Counts(accel=trace.accel_count, gyro=trace.gyro_count),
         state_raw=trace.state_raw,
+        told=trace.told,
         cycles_mean=run.cycles_mean,
         cycles_max=run.cycles_max,
         stack_bytes=run.stack_bytes,

@@ -7,6 +7,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.filters.core import FilterCore
 from hostkit.records import FilterDesign
 from hostkit.spec import FixedPointSpec
 
@@ -186,6 +187,8 @@ class Filter(Generic[SpecT]):
         numbers of shape ``(N,)`` for N frequencies in Hz.
     setting_words
         What the registers of an FPGA can change, in the order of ``hk_settings_t``.
+    core
+        Its VHDL core; None where there is none.
     """
 
     name: str
@@ -199,3 +202,4 @@ class Filter(Generic[SpecT]):
     response: Callable[[FilterDesign, Vector], tuple[Weights, Weights]]
     context: Callable[[FilterDesign, SpecT], object]
     setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]
+    core: FilterCore[SpecT] | None = None

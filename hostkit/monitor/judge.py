@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hostkit.design_file import digest
 from hostkit.link.frames.decoder import Frame, Source, digest_of, trace_of
-from hostkit.link.frames.samples import payloads
+from hostkit.link.frames.samples import SAMPLE, STATE, payloads
 from hostkit.monitor.device_status import US_PER_S
 from hostkit.monitor.notices import Notices
 from hostkit.monitor.snapshot import Batch
@@ -19,6 +19,9 @@ MOST_OTHERS = 8
 """Other devices that are told of; a hostile stream may claim any number."""
 
 PARAMETER = "PARAM_VALUE"
+MOST_STATES = 64
+"""States that are kept until a sample comes; the device tells one now and then."""
+
 MOST_EARLIER = 256
 """Parameters that are kept until it is known whose they are."""
 
@@ -75,6 +78,7 @@ class Judge:
         self._period_s = design.period_s
         self._others: set[Source] = set()
         self._earlier: list[Frame] = []
+        self._states: list[Frame] = []
         self._newest_us: int | None = None
         self._newest_s = 0.0
         self._is_retuned = False
@@ -95,7 +99,7 @@ class Judge:
     def begin_epoch(self) -> None:
         """Take the next sample for the first: the port was opened anew, or the replay moved."""
         self.epoch += 1
-        self._newest_us = None
+        self._newest_us, self._states = None, []
         self.other_digest, self._is_retuned = None, False
         self._validator.begin_epoch()
 
@@ -128,15 +132,15 @@ class Judge:
         position_s
             Where the time axis stands, s: what comes first in a new epoch is shown there.
         """
-        run: list[Frame] = []
+        run, self._states = self._states, []
         for frame in frames:
-            if self._is_ours(frame):
+            if self._is_ours(frame) or self._is_our_state(frame):
                 run.append(frame)
             elif frame.name != PARAMETER or frame.repeated:
                 continue
             elif frame.source == self.source:
                 yield from self._judge(run, epoch_s, position_s)
-                run = []
+                run, self._states = self._states, []
                 self._told(frame)
             elif self.source is None and len(self._earlier) < MOST_EARLIER:
                 self._earlier.append(frame)
@@ -145,20 +149,23 @@ class Judge:
     def _judge(
         self, run: list[Frame], epoch_s: float, position_s: Callable[[], float]
     ) -> Iterator[Stretch]:
-        if not run or self.refused:
+        samples = [frame for frame in run if frame.name == SAMPLE]
+        if not samples or self.refused:
+            self._states = [] if self.refused else run[:MOST_STATES]
             return
-        others = np.flatnonzero((payloads(run)["digest"] != self._digest).any(axis=1))
+        others = np.flatnonzero((payloads(samples)["digest"] != self._digest).any(axis=1))
         if len(others):
-            self.other_digest = digest_of(run[others[0]])
-            run = run[: others[0]]
+            self.other_digest = digest_of(samples[others[0]])
+            run = run[: run.index(samples[others[0]])]
+            samples = samples[: others[0]]
         hidden_words = len(self._validator.spec.hidden)
         trace = trace_of(run, self._axes, hidden_words=hidden_words)
         self._is_retuned |= trace.retuned is not None and bool(trace.retuned.any())
-        self.samples += len(run)
+        self.samples += len(samples)
         if self._as_designed and self._is_retuned:
             self._validator.add(trace)
             return
-        came_ns = {t: f.received_ns for t, f in zip(trace.time_us.tolist(), run, strict=True)}
+        came_ns = {t: f.received_ns for t, f in zip(trace.time_us.tolist(), samples, strict=True)}
         judged = self._validator.add(trace)
         for part in _rising(judged.time_us):
             received_ns = np.array([came_ns[t] for t in judged.time_us[part].tolist()])
@@ -200,7 +207,7 @@ class Judge:
         self._validator.told(str(frame.message.param_id), float(frame.message.param_value))
 
     def _is_ours(self, frame: Frame) -> bool:
-        if frame.name != "TILT_SAMPLE":
+        if frame.name != SAMPLE:
             return False
         if frame.source == self.source:
             return True
@@ -210,6 +217,9 @@ class Judge:
             return True
         self._tell_other(frame.source)
         return False
+
+    def _is_our_state(self, frame: Frame) -> bool:
+        return frame.name == STATE and frame.source == self.source and not frame.repeated
 
     def _tell_other(self, source: Source) -> None:
         if source in self._others or len(self._others) >= MOST_OTHERS:

@@ -9,7 +9,7 @@ from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.filters.arctan import ROOT_FRACTION_BITS, STRETCH_FRACTION_BITS
 from hostkit.mounting import Mounting
-from hostkit.records import Axis, FilterDesign
+from hostkit.records import FilterDesign
 from hostkit.render.arctan_context import ArctanContext, arctan_context
 from hostkit.render.choices import Options, firmware_options_of, fpga_options_of
 from hostkit.render.fpga_context import FpgaContext, fpga_context, link_options
@@ -161,8 +161,8 @@ class RenderContext:
     options: FirmwareOptions
     fpga: FpgaContext | None
     report: FpgaReport | None
-    mavlink: MavlinkContext
-    registers: RegistersContext
+    mavlink: MavlinkContext | None
+    registers: RegistersContext | None
     target: Target
 
     def banner(self, template: str) -> str:
@@ -203,7 +203,6 @@ def render_context(
     else:
         firmware = firmware_options_of(target, options)
     sensor = _sensor_context(design)
-    link = link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden))
     return RenderContext(
         design=_design_context(design),
         spec=spec,
@@ -221,25 +220,23 @@ def render_context(
             sensor.variant_configuration,
             period_us=round(1e6 * design.period_s),
         ),
-        link=link,
+        link=link_plan(design.rate_hz, target, firmware, hidden_words=len(spec.hidden)),
         options=firmware,
         fpga=fpga,
         report=None if fpga is None else fpga_report(fpga, spec, design.rate_hz, cells),
-        mavlink=mavlink_context(
-            firmware.identity,
-            firmware.system_id,
-            _hidden_biases(spec),
-            state_words=link.state_words,
-        ),
-        registers=registers_context(register_map(design, spec, chosen)),
+        mavlink=None if fpga is None else _mavlink_context(fpga, firmware),
+        registers=(None if fpga is None else registers_context(register_map(design, spec, chosen))),
         target=target,
     )
 
 
-def _hidden_biases(spec: FixedPointSpec) -> tuple[Axis, ...]:
-    """Return the axes whose bias a sample's message tells."""
-    hidden = {word.name for word in spec.hidden}
-    return tuple(axis for axis in spec.axes if f"gyro_bias_{axis}" in hidden)
+def _mavlink_context(fpga: FpgaContext, firmware: FirmwareOptions) -> MavlinkContext:
+    return mavlink_context(
+        firmware.identity,
+        firmware.system_id,
+        hidden_words=len(fpga.core.told_ports),
+        state_words=fpga.core.state_words,
+    )
 
 
 def _design_context(design: FilterDesign) -> DesignContext:

@@ -32,7 +32,7 @@ def environment(root: Path) -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    env.filters = {"real": repr, "hex": _hex, "macro": _macro}
+    env.filters = {"real": repr, "hex": _hex, "macro": _macro, "padded": str.ljust}
     return env
 
 

@@ -3,10 +3,11 @@
 import math
 from dataclasses import dataclass
 
-from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes, sample_bytes
+from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes, sample_bytes, state_bytes
 from hostkit.errors import RenderError
+from hostkit.filters.core import Latency
+from hostkit.render.core_context import CoreContext, core_context
 from hostkit.render.fpga_options import Bus, FpgaOptions
-from hostkit.render.latency import Latency, filter_latency
 from hostkit.render.link_plan import BITS_PER_BYTE, USABLE_PERCENT
 from hostkit.render.options import FirmwareOptions, Identity, MessageRate
 from hostkit.spec import FixedPointSpec
@@ -19,6 +20,13 @@ LOWEST_CLOCK_HZ = 10_000_000
 CLOCKS_PER_BIT = 8
 """The receiver of the serial line takes eight samples a bit."""
 LOWEST_DEFAULT_BAUD = 115_200
+SENSOR_READ_S = 0.5e-3
+"""From the sample of the sensor to its counts, at 400 kHz."""
+STATE_FRAME_CLOCKS = 2200
+"""What a frame of a sample and one of a state take in `hk_mavlink_tx` beside their bits."""
+WAITING_SAMPLES = 2
+"""One sample waits in the sensor's core while another one's state is sent; a third is lost if its
+reading begins before the second is taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,8 +37,8 @@ class FpgaContext:
     ----------
     clock
         How the clock is made from the oscillator of the board.
-    filter_clocks
-        Latency and interval of the filter.
+    core
+        The core of the filter.
     """
 
     bus: Bus
@@ -42,7 +50,7 @@ class FpgaContext:
     identity: Identity
     top_name: str
     clock: ClockPlan
-    filter_clocks: Latency
+    core: CoreContext
 
 
 def fpga_context(
@@ -53,23 +61,24 @@ def fpga_context(
     Raises
     ------
     RenderError
-        If the clock cannot be made or is too slow for the sensor's bus, the serial line or the
-        channels, or the serial line is too slow for the samples.
+        If the filter has no core of that kind, the clock cannot be made or is too slow for the
+        sensor's bus, the serial line or the channels, or the serial line is too slow for the
+        samples.
     """
+    core = core_context(spec, options)
     clock = _clock(options, target)
-    clocks = filter_latency(spec, pipelined=options.pipelined)
-    _require_channels(options.channels, clock.output_hz, rate_hz, clocks)
+    _require_channels(options.channels, clock.output_hz, rate_hz, core.clocks)
     return FpgaContext(
         bus=options.bus,
         channels=options.channels,
         pipelined=options.pipelined,
         clock_hz=clock.output_hz,
-        baud=_baud(options.baud, clock.output_hz, rate_hz, len(spec.hidden)),
+        baud=_baud(options.baud, clock.output_hz, rate_hz, core),
         system_id=options.system_id,
         identity=options.identity,
         top_name=options.top_name,
         clock=clock,
-        filter_clocks=clocks,
+        core=core,
     )
 
 
@@ -107,10 +116,27 @@ def _clock(options: FpgaOptions, target: Target) -> ClockPlan:
     return plan
 
 
-def _baud(chosen: int | None, clock_hz: int, rate_hz: float, hidden_words: int) -> int:
+def sample_frame_bytes(core: CoreContext) -> int:
+    """Return the size of a frame of ``TILT_SAMPLE``."""
+    return FRAME_OVERHEAD_BYTES + sample_bytes(len(core.told_ports))
+
+
+def second_bytes(core: CoreContext) -> int:
+    """Return what goes out once a second: a heartbeat and, if the core tells it, the state."""
+    heartbeat = FRAME_OVERHEAD_BYTES + payload_bytes("HEARTBEAT")
+    return heartbeat + (state_frame_bytes(core) if core.tells_state else 0)
+
+
+def state_frame_bytes(core: CoreContext) -> int:
+    """Return the size of a frame of ``TILT_STATE``."""
+    return FRAME_OVERHEAD_BYTES + state_bytes(core.state_words)
+
+
+def _baud(chosen: int | None, clock_hz: int, rate_hz: float, core: CoreContext) -> int:
     """Return the chosen baud rate or the slowest standard one, if it carries the samples."""
-    frame = FRAME_OVERHEAD_BYTES + sample_bytes(hidden_words)
-    needed = math.ceil(rate_hz * frame + FRAME_OVERHEAD_BYTES + payload_bytes("HEARTBEAT"))
+    needed = math.ceil(rate_hz * sample_frame_bytes(core) + second_bytes(core))
+    if core.tells_state:
+        needed = max(needed, _bytes_s_of_a_state(clock_hz, rate_hz, core))
     fits = [rate for rate in STANDARD_BAUDS if _usable_bytes_s(rate) >= needed]
     baud = chosen or next((rate for rate in fits if rate >= LOWEST_DEFAULT_BAUD), 0)
     if _usable_bytes_s(baud) < needed:
@@ -124,6 +150,18 @@ def _baud(chosen: int | None, clock_hz: int, rate_hz: float, hidden_words: int) 
             f"{CLOCKS_PER_BIT} clocks a bit"
         )
     return baud
+
+
+def _bytes_s_of_a_state(clock_hz: int, rate_hz: float, core: CoreContext) -> int:
+    """Return what the usable line must carry so that no sample is lost while a state is sent."""
+    clocks = core.clocks.latency + STATE_FRAME_CLOCKS
+    left_s = WAITING_SAMPLES / rate_hz - SENSOR_READ_S - clocks / clock_hz
+    if left_s <= 0.0:
+        raise RenderError(
+            f"clock_hz = {clock_hz}; {rate_hz:g} samples a second leave no time for the state"
+        )
+    burst = sample_frame_bytes(core) + state_frame_bytes(core)
+    return math.ceil(burst / left_s * USABLE_PERCENT / 100)
 
 
 def _usable_bytes_s(baud: int) -> int:

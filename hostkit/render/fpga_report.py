@@ -2,8 +2,13 @@
 
 from dataclasses import dataclass
 
-from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes, sample_bytes
-from hostkit.render.fpga_context import FpgaContext
+from hostkit.dialect import FRAME_OVERHEAD_BYTES, payload_bytes
+from hostkit.render.fpga_context import (
+    FpgaContext,
+    sample_frame_bytes,
+    second_bytes,
+    state_frame_bytes,
+)
 from hostkit.render.link_plan import BITS_PER_BYTE
 from hostkit.spec import FixedPointSpec
 
@@ -26,7 +31,7 @@ class FpgaReport:
 
     Attributes
     ----------
-    axes, method
+    axes
         What the filter gives, in words.
     samples_per_s
         Most that the filter takes at the chosen clock.
@@ -34,8 +39,9 @@ class FpgaReport:
         Times of the filter.
     most_channels
         Sensors of the design's rate that one filter could serve.
-    sample_bytes, heartbeat_bytes, sample_us
-        Frames on the serial line, and the time that one of a sample takes there.
+    sample_bytes, heartbeat_bytes, state_bytes, sample_us
+        Frames on the serial line, and the time that one of a sample takes there; 0 where there is
+        no frame of the state.
     link_percent
         How much of the line is used.
     cells
@@ -43,13 +49,13 @@ class FpgaReport:
     """
 
     axes: str
-    method: str
     samples_per_s: int
     latency_us: str
     interval_us: str
     most_channels: int
     sample_bytes: int
     heartbeat_bytes: int
+    state_bytes: int
     sample_us: str
     link_percent: str
     cells: tuple[CellCounts, ...]
@@ -59,20 +65,19 @@ def fpga_report(
     fpga: FpgaContext, spec: FixedPointSpec, rate_hz: float, cells: tuple[CellCounts, ...]
 ) -> FpgaReport:
     """Work out the figures of a system."""
-    sample = FRAME_OVERHEAD_BYTES + sample_bytes(len(spec.hidden))
-    heartbeat = FRAME_OVERHEAD_BYTES + payload_bytes("HEARTBEAT")
-    bits_per_s = BITS_PER_BYTE * (rate_hz * sample + heartbeat)
-    clocks, us = fpga.filter_clocks, 1e6 / fpga.clock_hz
+    sample = sample_frame_bytes(fpga.core)
+    bits_per_s = BITS_PER_BYTE * (rate_hz * sample + second_bytes(fpga.core))
+    clocks, us = fpga.core.clocks, 1e6 / fpga.clock_hz
     samples_per_s = clocks.samples_per_s(fpga.clock_hz)
     return FpgaReport(
         axes=" and ".join(spec.axes),
-        method="arc sine" if spec.tilt == "arcsin" else "arc tangent",
         samples_per_s=samples_per_s,
         latency_us=f"{clocks.latency * us:.3g}",
         interval_us=f"{clocks.interval * us:.3g}",
         most_channels=clocks.most_channels(fpga.clock_hz, rate_hz),
         sample_bytes=sample,
-        heartbeat_bytes=heartbeat,
+        heartbeat_bytes=FRAME_OVERHEAD_BYTES + payload_bytes("HEARTBEAT"),
+        state_bytes=state_frame_bytes(fpga.core) if fpga.core.tells_state else 0,
         sample_us=f"{BITS_PER_BYTE * 1e6 * sample / fpga.baud:.0f}",
         link_percent=f"{100.0 * bits_per_s / fpga.baud:.1f}",
         cells=cells,

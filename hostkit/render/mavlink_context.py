@@ -4,15 +4,15 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from hostkit.dialect import STATE_WORDS, python_module, sample_bytes, state_bytes
+from hostkit.dialect import python_module, sample_bytes, state_bytes
 from hostkit.errors import RenderError
-from hostkit.records import Axis
 from hostkit.render.options import Identity
 
-MOST_PAYLOAD_BYTES = 51
-"""`hk_mavlink_tx` numbers the bytes of a frame with 6 bits, and 13 are not of the payload."""
-MOST_STATE_BYTES = 114
-"""The same of ``TILT_STATE``: where it is sent, bytes are numbered with 7 bits."""
+OTHER_PLACES = 13
+"""Bytes of a frame that `hk_mavlink_tx` numbers beside its payload."""
+PLACE_BITS, PLACE_BITS_WITH_STATE = 6, 7
+"""Bits of such a number."""
+MOST_PAYLOAD_BYTES = 2**PLACE_BITS_WITH_STATE - OTHER_PLACES
 MAVLINK_VERSION = 3
 """The protocol's own number, in every HEARTBEAT of version 2."""
 FLAGS = ("RESTARTED", "SATURATED", "RETUNED")
@@ -55,11 +55,10 @@ class MessageContext:
 
     def __post_init__(self) -> None:
         """Refuse what the core cannot number."""
-        most = MOST_STATE_BYTES if self.title == "TILT_STATE" else MOST_PAYLOAD_BYTES
-        if self.payload_bytes > most:
+        if self.payload_bytes > MOST_PAYLOAD_BYTES:
             raise RenderError(
                 f"{self.title} has a payload of {self.payload_bytes} bytes; "
-                f"the limit of hk_mavlink_tx is {most}"
+                f"the limit of hk_mavlink_tx is {MOST_PAYLOAD_BYTES}"
             )
 
 
@@ -81,14 +80,10 @@ class MavlinkContext:
         First byte of a frame; the protocol's number in a heartbeat.
     system_id, component_id, vehicle_type, autopilot
         Who the device says it is.
-    sample, heartbeat, state
-        The messages.
-    tells_state, state_words
-        Whether the last of them is sent, and how many of its words are used.
-    hides_bias_roll, hides_bias_pitch
-        Whether that bias is hidden state.
-    bias_roll_word, bias_pitch_word
-        Which word of it; 0 if it is none.
+    messages
+        Those that are sent.
+    place_bits
+        Bits of the number of a byte.
     flags
         Of a sample.
     """
@@ -99,29 +94,22 @@ class MavlinkContext:
     component_id: int
     vehicle_type: int
     autopilot: int
-    sample: MessageContext
-    heartbeat: MessageContext
-    state: MessageContext
-    tells_state: bool
-    state_words: int
-    hides_bias_roll: bool
-    hides_bias_pitch: bool
-    bias_roll_word: int
-    bias_pitch_word: int
+    messages: tuple[MessageContext, ...]
+    place_bits: int
     flags: tuple[FlagContext, ...]
 
 
 def mavlink_context(
-    identity: Identity, system_id: int, hidden_axes: tuple[Axis, ...], *, state_words: int = 0
+    identity: Identity, system_id: int, *, hidden_words: int, state_words: int = 0
 ) -> MavlinkContext:
     """Lay out the messages of the dialect that the installed pymavlink makes.
 
     Parameters
     ----------
-    hidden_axes
-        Axes whose bias is hidden state, in the order of the design.
+    hidden_words
+        Words of the filter's state that ``TILT_SAMPLE`` tells.
     state_words
-        Words that ``TILT_STATE`` tells; 0 where it is not sent.
+        Those that ``TILT_STATE`` tells; 0 where it is not sent.
 
     Raises
     ------
@@ -129,6 +117,12 @@ def mavlink_context(
         If mavgen makes nothing, or a payload is longer than the core can send.
     """
     module: Any = python_module()
+    messages = [
+        _message("TILT_SAMPLE", "sample", sample_bytes(hidden_words)),
+        _message("HEARTBEAT", "heartbeat", None),
+    ]
+    if state_words:
+        messages.append(_message("TILT_STATE", "state", state_bytes(state_words)))
     return MavlinkContext(
         magic=module.PROTOCOL_MARKER_V2,
         mavlink_version=MAVLINK_VERSION,
@@ -136,21 +130,10 @@ def mavlink_context(
         component_id=identity.component_id,
         vehicle_type=identity.vehicle_type,
         autopilot=identity.autopilot,
-        sample=_message("TILT_SAMPLE", "sample", sample_bytes(len(hidden_axes))),
-        heartbeat=_message("HEARTBEAT", "heartbeat", None),
-        state=_message("TILT_STATE", "state", state_bytes(state_words or STATE_WORDS)),
-        tells_state=state_words > 0,
-        state_words=state_words,
-        hides_bias_roll="roll" in hidden_axes,
-        hides_bias_pitch="pitch" in hidden_axes,
-        bias_roll_word=_word("roll", hidden_axes),
-        bias_pitch_word=_word("pitch", hidden_axes),
+        messages=tuple(messages),
+        place_bits=PLACE_BITS_WITH_STATE if state_words else PLACE_BITS,
         flags=tuple(_flag(module, name) for name in FLAGS),
     )
-
-
-def _word(axis: Axis, hidden_axes: tuple[Axis, ...]) -> int:
-    return hidden_axes.index(axis) if axis in hidden_axes else 0
 
 
 def _flag(module: Any, name: str) -> FlagContext:

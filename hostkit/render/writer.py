@@ -10,6 +10,7 @@ from hostkit.files import write_aside
 from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render.choices import Options, default_options
 from hostkit.render.context import render_context
+from hostkit.render.core_context import core_folders
 from hostkit.render.environment import environment, template_root
 from hostkit.render.fpga_report import CellCounts
 from hostkit.render.manifest import MANIFEST, manifest_text, read_manifest, sha256
@@ -50,10 +51,11 @@ def render_target(
 def _filter_folders(
     design: FilterDesign, target: Target, options: FirmwareOptions
 ) -> tuple[str, ...]:
-    """Return the folder of the filter, and that of what filters in integers share."""
+    """Return the folder of the filter, and those of what it shares with other filters."""
     if options.arithmetic == "float":
         return (f"{design.filter}_float",)
-    return ("fixed", design.filter) if target.kind == "mcu" else (design.filter,)
+    shared = ("fixed",) if target.kind == "mcu" else core_folders(design.filter)
+    return (*shared, design.filter)
 
 
 def generate(

@@ -3,21 +3,21 @@
 import tempfile
 from pathlib import Path
 
-from hostkit.records import GeneratedFile
+from hostkit.records import FilterDesign, GeneratedFile
 from hostkit.render import write
 from hostkit.render.fpga_report import CellCounts
 from hostkit.synthesis.convert import convert
 from hostkit.synthesis.mapping import map_netlist
 from hostkit.targets import Target
 
-ENTITIES = ("hk_system", "hk_complementary")
-"""The whole but for clock and pads, and the filter by itself."""
+SYSTEM = "hk_system"
+"""The whole but for clock and pads."""
 
 
 def measure(
-    files: tuple[GeneratedFile, ...], target: Target, entities: tuple[str, ...] = ENTITIES
+    files: tuple[GeneratedFile, ...], target: Target, design: FilterDesign
 ) -> tuple[CellCounts, ...]:
-    """Convert and map entities of a rendered FPGA target, and count their cells.
+    """Convert and map the system of a rendered FPGA target and its filter, and count their cells.
 
     Raises
     ------
@@ -29,6 +29,7 @@ def measure(
     with tempfile.TemporaryDirectory(prefix="hostkit-measure-") as name:
         folder = Path(name)
         write(files, folder)
+        entities = (SYSTEM, f"hk_{design.filter}")
         return tuple(_measured(folder, entity, target.family) for entity in entities)
 
 

@@ -43,7 +43,7 @@ ECP5 = Target(
     title="ECP5 (LFE5U-25F, ULX3S), VHDL-93",
     kind="fpga",
     folders=(
-        *("common", "polar", "sensor", "link"),
+        *("common", "sensor", "link"),
         *("registers", "system", "report", "ecp5", "sim"),
     ),
     clock_hz=25_000_000,

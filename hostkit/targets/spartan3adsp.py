@@ -60,7 +60,7 @@ SPARTAN3ADSP = Target(
     title="Spartan-3A DSP (XC3SD3400A), VHDL-93",
     kind="fpga",
     folders=(
-        *("common", "polar", "sensor", "link"),
+        *("common", "sensor", "link"),
         *("registers", "system", "report", "spartan3adsp", "sim"),
     ),
     clock_hz=50_000_000,

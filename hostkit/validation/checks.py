@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hostkit.records import ResidualStatistics, ValidationReport
 from hostkit.units import DEG_PER_RAD
-from hostkit.validation.thresholds import MAX_UNJUDGED_SHARE, Thresholds
+from hostkit.validation.thresholds import MAX_UNJUDGED_SHARE, MAX_WAIT_S, Thresholds
 
 MS_PER_S, S_PER_MIN = 1e3, 60.0
 
@@ -29,6 +29,7 @@ def checks(report: ValidationReport, thresholds: Thresholds) -> tuple[Check, ...
         _steps(report),
         _every_sample(report),
         _parameters(report),
+        *((_state(report),) if report.waiting else ()),
         _size("residual rms", "rms", report.rms_rad, thresholds.max_rms_deg),
         _size("largest residual", "at most", report.max_rad, thresholds.max_abs_deg),
         _size(
@@ -53,6 +54,8 @@ def _steps(report: ValidationReport) -> Check:
     reason = ""
     if not report.checked:
         reason = "no step could be checked"
+        if report.waiting:
+            reason += ": the device has not told the state of its filter (TILT_STATE)"
     elif report.mismatches:
         model = "the integer model"
         if report.tolerance_rad is not None:
@@ -77,13 +80,24 @@ def _parameters(report: ValidationReport) -> Check:
     if report.untold:
         names = ", ".join(report.untold)
         reason = f"the device uses other parameters than its design's and has not told {names}"
-    elif report.stride == 1 and report.unjudged > MAX_UNJUDGED_SHARE * report.samples:
-        reason = (
-            f"{report.unjudged} of {report.samples} samples came before their parameters were known"
-        )
-    figure = f"{report.unjudged} of {report.samples} not judged"
+    unknown = report.unjudged - report.waiting
+    if not reason and report.stride == 1 and unknown > MAX_UNJUDGED_SHARE * report.samples:
+        reason = f"{unknown} of {report.samples} samples came before their parameters were known"
+    figure = f"{unknown} of {report.samples} not judged"
     limit = f"{MAX_UNJUDGED_SHARE:.0%}"
     return Check(name="parameters known", figure=figure, limit=limit, reason=reason)
+
+
+def _state(report: ValidationReport) -> Check:
+    """Compare how long a gap lasted until the device told the state of its filter."""
+    waited_s, reason = report.longest_wait_s, ""
+    if waited_s > MAX_WAIT_S:
+        reason = (
+            f"the state of the filter was not known for {waited_s:.1f} s; "
+            "have the device send TILT_STATE more often"
+        )
+    figure = f"{report.waiting} samples not judged, {waited_s:.1f} s at most"
+    return Check(name="state told", figure=figure, limit=f"{MAX_WAIT_S:g} s", reason=reason)
 
 
 def _size(name: str, kind: str, value_rad: float | None, limit_deg: float | None) -> Check:

@@ -28,11 +28,14 @@ class Steps:
         Angles of the float model, shape ``(N, A)``; NaN where it could not follow.
     judged, wrong
         Which steps were checked, and which of them are wrong, shape ``(N,)``.
+    confirmed
+        How many right steps they stand for, where a change of parameters is doubted.
     """
 
     exact: Vector
     judged: BoolArray
     wrong: BoolArray
+    confirmed: int = 0
 
     def withdraw(self, first: int) -> None:
         """Judge nothing from a sample on."""
@@ -52,6 +55,8 @@ class Follower:
         As in :class:`hostkit.validation.Validator`.
     """
 
+    waits = False
+
     def __init__(self, design: FilterDesign, designed: Model, tolerance_rad: float | None) -> None:
         self._sensor = design.sensor
         self._filter = FILTERS[design.filter]
@@ -61,6 +66,13 @@ class Follower:
         self._tolerance_rad = tolerance_rad
         self._state: IntArray | None = None
         self._float_state: Vector | None = None
+
+    def forget(self) -> None:
+        """Know nothing of the device; a sample that does not follow makes up for that."""
+
+    def hear(self, trace: AngleTrace, *, anew: bool) -> int:
+        """Pass over states beside the samples: these have it all."""
+        return 0
 
     def device_rad(self, trace: AngleTrace) -> Vector:
         """Return the angles of the device, shape ``(N, A)``."""
@@ -90,7 +102,8 @@ class Follower:
             away = np.abs(wrap_rad(self.device_rad(trace) - exact))
             wrong = (away > self._tolerance_rad).any(axis=1)
         self._state = trace.state_raw[-1:]
-        return Steps(exact=exact, judged=judged, wrong=wrong & judged)
+        confirmed = int(judged.sum())
+        return Steps(exact=exact, judged=judged, wrong=wrong & judged, confirmed=confirmed)
 
     def _expected(self, used: Model, trace: AngleTrace) -> IntArray:
         before = trace.state_raw[:1] if self._state is None else self._state

@@ -6,39 +6,12 @@ from dataclasses import dataclass
 
 from hostkit.errors import HostkitError
 from hostkit.filters import FILTERS
-from hostkit.filters.complementary import (
-    RUN_TIME,
-    RunTimeParameter,
-    limits,
-    told_by_device,
-    with_told,
-)
+from hostkit.filters.filter import DeviceParameter
 from hostkit.records import FilterDesign, RetunedParameter
 from hostkit.spec import FixedPointSpec
 
 AGREEING_STEPS = 50
 """Right steps after which no change of a parameter can have been missed."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DeviceParameter:
-    """A parameter of the filter as the device has it.
-
-    Attributes
-    ----------
-    name, unit
-        Its name on the link, and the unit of its value.
-    design_value
-        What a device tells that nothing was set on.
-    lowest, highest
-        What a device takes.
-    """
-
-    name: str
-    unit: str
-    design_value: float
-    lowest: float
-    highest: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,28 +22,9 @@ class Model:
     spec: FixedPointSpec
 
 
-def link_name(item: RunTimeParameter) -> str:
-    """Return the name that a parameter of the filter has on the link."""
-    short = {"tau": "FILT_TAU", "gyro_bias": "GYRO_BIAS", "tilt_offset": "TILT_OFS"}[item.kind]
-    return short if item.axis is None else f"{short}_{item.axis.upper()}"
-
-
 def device_parameters(design: FilterDesign) -> tuple[DeviceParameter, ...]:
     """Return the parameters that a device of a design has for its filter."""
-    found = []
-    for item, value in zip(RUN_TIME, told_by_device(design), strict=True):
-        if item.of(design):
-            lowest, highest = limits(item, design.period_s)
-            found.append(
-                DeviceParameter(
-                    name=link_name(item),
-                    unit=item.unit,
-                    design_value=value,
-                    lowest=lowest,
-                    highest=highest,
-                )
-            )
-    return tuple(found)
+    return FILTERS[design.filter].run_time.parameters(design)
 
 
 class Retuning:
@@ -134,10 +88,10 @@ class Retuning:
 
     def _made(self) -> Model | None:
         own = self.designed.design
-        values = tuple(self._told[link_name(i)] if i.of(own) else 0.0 for i in RUN_TIME)
+        filter_ = FILTERS[own.filter]
         try:
-            design = with_told(own, values)
-            return Model(design=design, spec=FILTERS[design.filter].lower(design))
+            design = filter_.run_time.with_told(own, self._told)
+            return Model(design=design, spec=filter_.lower(design))
         except HostkitError:
             return None
 

@@ -15,6 +15,9 @@ DEFAULT_MAX_LOST_SHARE = 0.01
 MAX_UNJUDGED_SHARE = 0.5
 """Largest share of samples that may come while the parameters in use are not known."""
 
+MAX_WAIT_S = 10.0
+"""Longest time without a told state where one is needed, s; devices tell it every second."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:

@@ -16,7 +16,9 @@ from hostkit.validation.judged import Judged
 from hostkit.validation.order import SampleOrder, places
 from hostkit.validation.residual import ResidualTracker
 from hostkit.validation.retuning import Model, Retuning, runs
+from hostkit.validation.state_follower import StateFollower
 from hostkit.validation.thresholds import Thresholds
+from hostkit.validation.waiting import Waiting
 
 Vector = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -29,6 +31,9 @@ class Validator:
     Every step is computed again from the raw counts and the state *before* it, which the device
     sent with the previous sample, so that a loss costs the check of one step and no more. The
     float model runs on from step to step; after a loss it starts from the device's state.
+
+    The samples of a filter with a long state do not hold all of it: its models run on from step
+    to step, and after a loss until the device tells its state, the samples are not judged.
 
     A device that says RETUNED is judged with the parameters that it told; until it has told all of
     them its samples are not judged.
@@ -66,8 +71,10 @@ class Validator:
         self._as_designed, self._tolerance_rad = as_designed, tolerance_rad
         self._retuning = Retuning(design)
         self.spec = self._retuning.designed.spec
-        self._follower = Follower(design, self._retuning.designed, tolerance_rad)
+        follower = StateFollower if self.spec.tells_state else Follower
+        self._follower = follower(design, self._retuning.designed, tolerance_rad)
         self._order = SampleOrder()
+        self._waiting = Waiting()
         self._elapsed = 0
         self._is_retuned = False
         self.restart()
@@ -76,6 +83,7 @@ class Validator:
         """Forget the figures so far; the models go on."""
         self._order.forget_figures()
         self.samples = self.checked = self.mismatches = self._unjudged = 0
+        self._waiting.forget_figures()
         self._was_retuned = self._is_retuned
         self._retuning.drop_withheld()
         self._trackers = tuple(ResidualTracker(axis, self._period_s) for axis in self._axes)
@@ -86,6 +94,7 @@ class Validator:
         The device may have started anew, so what it told of its parameters is forgotten.
         """
         self._order.begin()
+        self._follower.forget()
         self._retuning.forget()
 
     def told(self, name: str, value: float) -> None:
@@ -125,7 +134,7 @@ class Validator:
         retuned = np.zeros_like(follows) if trace.retuned is None else trace.retuned
         for run in runs(retuned.tolist()):
             used = self._model(is_retuned=bool(retuned[run.start]))
-            steps = self._judge(used, _part(trace, run), follows[run])
+            steps = self._judge(used, trace.part(run), follows[run])
             if steps is not None:
                 model[run], wrong[run] = steps.exact, steps.wrong
         residual = wrap_rad(device - model)
@@ -146,6 +155,7 @@ class Validator:
         restarts = self._order.restarts
         found = places(self._order, trace.sequence.tolist(), contents, trace.restarted.tolist())
         names = [place for place, _ in found]
+        anew = "anew" in names
         self.samples += len(names) - names.count("repeated")
         if self._order.restarts > restarts:
             self._retuning.forget()
@@ -154,9 +164,20 @@ class Validator:
         kept = np.array([name not in ("late", "repeated") for name in names], dtype=np.bool_)
         follows = np.array([name == "follows" for name in names], dtype=np.bool_)
         step = np.array([step for _, step in found], dtype=np.int64)
-        if kept.all():
-            return trace, step, follows
-        return _part(trace, kept), step[kept], follows[kept]
+        if not kept.all():
+            trace, step, follows = trace.part(kept), step[kept], follows[kept]
+        self._hear(trace, anew=anew)
+        return trace, step, follows
+
+    def _hear(self, trace: AngleTrace, *, anew: bool) -> None:
+        """Count wrong states that came apart from their samples."""
+        wrong = self._follower.hear(trace, anew=anew)
+        if wrong and self._is_retuned and self._retuning.doubted:
+            self._retuning.withhold(wrong, wrong)
+            self._unjudged += wrong
+            return
+        self.mismatches += wrong
+        self.checked += wrong
 
     def _model(self, *, is_retuned: bool) -> Model | None:
         self._is_retuned = is_retuned
@@ -174,16 +195,18 @@ class Validator:
         steps = self._follower.run(used, trace, follows)
         self._count_withheld()
         wrong, checked = int(steps.wrong.sum()), int(steps.judged.sum())
+        if self._follower.waits:
+            self._unjudged += self._waiting.add(steps.judged)
         if wrong and self._is_retuned and self._retuning.doubted:
             first = int(steps.wrong.argmax())
             later = int(steps.judged[first:].sum())
             self._retuning.withhold(wrong, later)
             steps.withdraw(first)
             self._follower.skip(trace)
-            self._unjudged += len(trace) - first
+            self._unjudged += later if self._follower.waits else len(trace) - first
             wrong, checked = 0, checked - later
         elif not wrong:
-            self._retuning.agreed(checked)
+            self._retuning.agreed(steps.confirmed)
         self.mismatches += wrong
         self.checked += checked
         return steps
@@ -253,21 +276,11 @@ class Validator:
             late=self._order.late,
             repeated=self._order.repeated,
             unjudged=min(self.samples, self._unjudged + self._order.thinned),
+            waiting=min(self.samples, self._waiting.samples),
+            longest_wait_s=self._waiting.longest * self._period_s,
             stride=self._order.widest_stride,
             tolerance_rad=self._tolerance_rad,
             untold=self.untold,
             residual=tuple(entry for entry in residual if entry is not None),
             retuned=self._retuning.differences() if self._was_retuned else (),
         )
-
-
-def _part(trace: AngleTrace, which: slice | BoolArray) -> AngleTrace:
-    return AngleTrace(
-        sequence=trace.sequence[which],
-        time_us=trace.time_us[which],
-        accel_count=trace.accel_count[which],
-        gyro_count=trace.gyro_count[which],
-        state_raw=trace.state_raw[which],
-        restarted=trace.restarted[which],
-        retuned=None if trace.retuned is None else trace.retuned[which],
-    )

@@ -14,10 +14,10 @@ from hdl_cases import build_core
 
 from hostkit.emulation import ghdl
 from hostkit.filters.complementary import lower
+from hostkit.filters.complementary.core import clocks
 from hostkit.records import FilterDesign
 from hostkit.render import FpgaOptions, render_target, write
 from hostkit.render.fpga_options import Bus
-from hostkit.render.latency import filter_latency
 from hostkit.synthesis import convert
 from hostkit.targets import TARGETS
 
@@ -67,7 +67,7 @@ def test_the_stated_clocks_are_those_of_the_core(
     core = build_core(timed, tmp_path)
     counts = np.full((6, 3), 1000, dtype=np.int64)
     run = ghdl.simulate(core.folder, counts, counts, pipelined=pipelined)
-    stated = filter_latency(lower(timed), pipelined=pipelined)
+    stated = clocks(lower(timed), pipelined=pipelined)
     assert min(run.latency_cycles) == stated.latency
     assert max(np.diff(run.taken_cycle)) == stated.channel_interval
 

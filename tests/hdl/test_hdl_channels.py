@@ -171,8 +171,8 @@ def test_settings_change_between_two_samples(channel_core: Core, random_stalls: 
     run = ghdl.simulate(
         *(channel_core.folder, accel, gyro),
         settings={
-            at[0]: ghdl.hdl_settings(changed(spec)),
-            at[1]: ghdl.hdl_settings(spec),
+            at[0]: ghdl.hdl_settings(channel_core.design, changed(spec)),
+            at[1]: ghdl.hdl_settings(channel_core.design, spec),
         },
         random_stalls=random_stalls,
     )

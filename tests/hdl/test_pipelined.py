@@ -24,9 +24,10 @@ from hostkit.emulation.ghdl import HdlRun
 from hostkit.emulation.hdl_vectors import hdl_settings
 from hostkit.errors import EmulationError
 from hostkit.filters.complementary import lower, step_integer
+from hostkit.filters.complementary.core import clocks
+from hostkit.filters.core import Latency
 from hostkit.records import FilterDesign
 from hostkit.render import render_target, write
-from hostkit.render.latency import Latency, filter_latency
 from hostkit.targets import TARGETS
 
 ACCEL, GYRO = count_vectors()
@@ -35,7 +36,7 @@ ENOUGH = 12
 
 
 def latency(varied: FilterDesign) -> Latency:
-    return filter_latency(lower(varied), pipelined=True)
+    return clocks(lower(varied), pipelined=True)
 
 
 def expected(core: Core, channel: IntArray, accel: IntArray, gyro: IntArray) -> IntArray:
@@ -126,8 +127,8 @@ def test_the_last_of_1024_channels_is_a_filter_of_its_own(core: Core) -> None:
 @three_designs
 def test_a_reset_in_the_middle_starts_over(core: Core) -> None:
     accel, gyro = ACCEL[200:203], GYRO[200:203]
-    for clocks in (1, 3, 20, 62, 68, 71, 75, 90):
-        run = ghdl.simulate(core.folder, accel, gyro, pipelined=True, abandon_clocks=clocks)
+    for after in (1, 3, 20, 62, 68, 71, 75, 90):
+        run = ghdl.simulate(core.folder, accel, gyro, pipelined=True, abandon_clocks=after)
         np.testing.assert_array_equal(answer(run), core.expected(accel, gyro))
         assert run.restarted.tolist() == [True, False, False]
 
@@ -146,7 +147,7 @@ def test_settings_may_change_between_samples(core: Core) -> None:
     accel, gyro = vectors(core.design, 2**20)
     accel, gyro = accel[-200:], gyro[-200:]
     run = ghdl.simulate(
-        core.folder, accel, gyro, pipelined=True, settings={80: hdl_settings(changed)}
+        core.folder, accel, gyro, pipelined=True, settings={80: hdl_settings(core.design, changed)}
     )
     state = core.expected(accel[:80], gyro[:80])
     for i in range(80, len(accel)):

@@ -9,6 +9,7 @@ from hostkit.cli.main import cli
 from hostkit.design_file import save_design
 from hostkit.errors import HostkitError, RenderError
 from hostkit.filters.complementary import lower
+from hostkit.filters.complementary.core import clocks
 from hostkit.render import (
     FirmwareOptions,
     FpgaOptions,
@@ -22,7 +23,6 @@ from hostkit.render.context import render_context
 from hostkit.render.fpga_context import FpgaContext
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS
 from hostkit.render.fpga_report import CellCounts
-from hostkit.render.latency import filter_latency
 from hostkit.targets import TARGETS
 
 SPARTAN, ECP5 = TARGETS["spartan3adsp"], TARGETS["ecp5"]
@@ -130,12 +130,12 @@ def test_the_line_is_as_fast_as_the_samples_need(rate_hz: float, baud: int) -> N
 
 
 def test_the_clocks_of_a_filter() -> None:
-    assert filter_latency(lower(design())).latency == 54
-    assert filter_latency(lower(design(axes="roll"))).latency == 30
-    assert filter_latency(lower(design(tilt="arcsin"))).interval == 83
-    assert filter_latency(lower(all_parameters())).latency == 55
-    assert filter_latency(lower(all_parameters(tilt="arcsin"))).latency == 83
-    fast = filter_latency(lower(design()), pipelined=True)
+    assert clocks(lower(design())).latency == 54
+    assert clocks(lower(design(axes="roll"))).latency == 30
+    assert clocks(lower(design(tilt="arcsin"))).interval == 83
+    assert clocks(lower(all_parameters())).latency == 55
+    assert clocks(lower(all_parameters(tilt="arcsin"))).latency == 83
+    fast = clocks(lower(design()), pipelined=True)
     assert (fast.latency, fast.interval, fast.channel_interval) == (70, 1, 9)
     assert fast.most_channels(50_000_000, 1000.0) == 50_000
 

@@ -12,7 +12,7 @@ TEMPLATES = sorted(
 )
 COMPUTING = (jinja2.nodes.BinExpr, jinja2.nodes.Concat, jinja2.nodes.Neg, jinja2.nodes.Pos)
 LOGIC = (jinja2.nodes.And, jinja2.nodes.Or)
-FILTERS = {"real", "hex", "macro"}
+FILTERS = {"real", "hex", "macro", "padded"}
 
 
 def computing_nodes(text: str) -> list[str]:

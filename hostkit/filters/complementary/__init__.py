@@ -1,6 +1,7 @@
 """The complementary filter of one or two tilt axes."""
 
 from hostkit.filters.complementary.context import filter_context
+from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.facts import facts
 from hostkit.filters.complementary.float_model import run_float
 from hostkit.filters.complementary.gate import force_gate
@@ -92,4 +93,5 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
 )

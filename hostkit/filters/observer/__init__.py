@@ -16,6 +16,7 @@ from hostkit.filters.observer.parameters import (
     parameter,
     parameters,
 )
+from hostkit.filters.observer.response import response
 from hostkit.filters.observer.run_time import (
     RUN_TIME,
     device_parameters,
@@ -47,6 +48,7 @@ __all__ = [
     "lower",
     "parameter",
     "parameters",
+    "response",
     "run_float",
     "run_integer",
     "setting_words",
@@ -69,6 +71,7 @@ OBSERVER: Filter[ObserverSpec] = Filter(
         with_told=with_told,
     ),
     facts=facts,
+    response=response,
     context=filter_context,
     setting_words=setting_words,
 )

@@ -19,8 +19,32 @@ def facts(design: FilterDesign) -> tuple[Fact, ...]:
     own = settings(design)
     tau_s = 1.0 / math.sqrt(own.kt_rad_m * STANDARD_GRAVITY_M_S2)
     return (
-        Fact(name="kt_rad_m", label="tilt gain", value=own.kt_rad_m, unit="rad/m"),
-        Fact(name="kv_per_s", label="decay of the velocity", value=own.kv_per_s, unit="1/s"),
-        Fact(name="kb_per_s", label="bias gain", value=own.kb_per_s, unit="1/s"),
-        Fact(name="tau_s", label="time constant", value=tau_s, unit="s"),
+        Fact(
+            name="kt_rad_m",
+            label="kt",
+            value=own.kt_rad_m,
+            unit="rad/m",
+            note="rate of correction per velocity",
+        ),
+        Fact(
+            name="kv_per_s",
+            label="kv",
+            value=own.kv_per_s,
+            unit="1/s",
+            note="decay of the velocity",
+        ),
+        Fact(
+            name="kb_per_s",
+            label="kb",
+            value=own.kb_per_s,
+            unit="1/s",
+            note="bias per correction",
+        ),
+        Fact(
+            name="tau_s",
+            label="tau",
+            value=tau_s,
+            unit="s",
+            note="time constant, 1 / sqrt(kt g)",
+        ),
     )

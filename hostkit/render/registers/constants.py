@@ -5,7 +5,8 @@ from typing import Final
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.fixedpoint import QFormat
+from hostkit.errors import RenderError
+from hostkit.filters.core import CoreFacts, WordFormat
 from hostkit.records import FilterDesign
 from hostkit.render.fpga_options import FpgaOptions
 from hostkit.render.registers.records import WORD_BYTES, Field, Register
@@ -16,28 +17,43 @@ MAGIC: Final = int.from_bytes(b"HKIT", "big")
 MAP_REVISION: Final = 1
 """Raised when an address or a field moves."""
 
-_NO_FORMAT: Final = QFormat(width=18, fraction_bits=0)
+FIRST_FEATURES: Final = (2, 5)
+"""Bits of FEATURES for what the filter tells, up to the one of PIPELINED; then those behind it."""
+FEATURE_BITS: Final = (*range(*FIRST_FEATURES), *range(FIRST_FEATURES[1] + 1, 16))
+FORMATS_A_WORD: Final = 4
+MOST_FORMATS: Final = FORMATS_A_WORD + 2
+"""Those of FORMATS, and two in SCALES."""
 
 
 def constant_registers(
-    design: FilterDesign, spec: FixedPointSpec, options: FpgaOptions
+    design: FilterDesign, spec: FixedPointSpec, options: FpgaOptions, core: CoreFacts
 ) -> tuple[Register, ...]:
-    """Return the registers of constants, from address 0 up."""
+    """Return the registers of constants, from address 0 up.
+
+    Raises
+    ------
+    RenderError
+        If the filter tells more of its core than there is room for.
+    """
+    _require_room(spec, "features", len(core.features), len(FEATURE_BITS))
+    _require_room(spec, "formats", len(core.formats), MOST_FORMATS)
+    first = core.formats[:FORMATS_A_WORD]
     digits = digest(design)
     words = (
         ("IDENTITY", "Always 0x484B4954, HKIT in ASCII.", (_constant("MAGIC", 0, 32, MAGIC),)),
         ("VERSION", "Revision of this map and version of hostkit.", _version(__version__)),
         ("DIGEST_HIGH", "First digits of the design's digest.", _digest(digits[:4])),
         ("DIGEST_LOW", "The other digits.", _digest(digits[4:])),
-        ("FEATURES", "What the filter has.", _features(spec, options.channels, options.pipelined)),
+        ("FEATURES", "What the filter has.", _features(spec, options, core)),
         ("SENSOR", "How the sensor is set.", _sensor(design)),
         ("RATE", "Sample rate.", (_constant("MILLIHERTZ", 0, 32, round(1e3 * design.rate_hz)),)),
-        ("FORMATS", "Fraction bits of the coefficients.", _formats(spec)),
-        ("SCALES", "Weight of the other words.", _scales(spec)),
+        ("FORMATS", "Fraction bits of the coefficients.", _formats(first)),
+        ("SCALES", "Weight of the other words.", _scales(spec, core)),
     )
     return tuple(
         Register(name=name, address=WORD_BYTES * i, description=description, fields=fields)
         for i, (name, description, fields) in enumerate(words)
+        if fields
     )
 
 
@@ -66,17 +82,27 @@ def _digest(digits: str) -> tuple[Field, ...]:
     return (_constant("DIGITS", 0, 4 * len(digits), int(digits, 16), f"{len(digits)} hex digits"),)
 
 
-def _features(spec: FixedPointSpec, channels: int, pipelined: bool) -> tuple[Field, ...]:
-    flags = (
-        ("ROLL", "roll" in spec.axes, "roll is estimated"),
-        ("PITCH", "pitch" in spec.axes, "pitch is estimated"),
-        ("ARCSIN", spec.tilt == "arcsin", "tilt is the arc sine of one component"),
-        ("GATE", spec.gate is not None, "the size of the specific force gates the correction"),
-        ("INTEGRAL", spec.integral is not None, "the bias of the gyroscope is estimated"),
-        ("PIPELINED", pipelined, "the filter takes a sample every clock"),
+def _require_room(spec: FixedPointSpec, what: str, needed: int, room: int) -> None:
+    if needed > room:
+        raise RenderError(
+            f"the filter {spec.filter} tells {needed} {what} of its core; the registers have room "
+            f"for {room}"
+        )
+
+
+def _features(spec: FixedPointSpec, options: FpgaOptions, core: CoreFacts) -> tuple[Field, ...]:
+    flags = [
+        (0, "ROLL", "roll" in spec.axes, "roll is estimated"),
+        (1, "PITCH", "pitch" in spec.axes, "pitch is estimated"),
+        (5, "PIPELINED", options.pipelined, "the filter takes a sample every clock"),
+    ]
+    for bit, feature in zip(FEATURE_BITS, core.features, strict=False):
+        flags.append((bit, feature.name, feature.present, feature.title))
+    bits = [_constant(name, bit, 1, int(has), text) for bit, name, has, text in sorted(flags)]
+    return (
+        *bits,
+        _constant("CHANNELS", 16, 16, options.channels, "sensors that the filter serves"),
     )
-    bits = tuple(_constant(name, i, 1, int(has), text) for i, (name, has, text) in enumerate(flags))
-    return (*bits, _constant("CHANNELS", 16, 16, channels, "sensors that the filter serves"))
 
 
 def _sensor(design: FilterDesign) -> tuple[Field, ...]:
@@ -94,23 +120,15 @@ def _sensor(design: FilterDesign) -> tuple[Field, ...]:
     )
 
 
-def _formats(spec: FixedPointSpec) -> tuple[Field, ...]:
-    by_axis = dict(zip(spec.axes, spec.rate_gains, strict=True))
-    formats = (
-        ("BLEND", spec.blend.format),
-        ("RATE_GAIN_ROLL", by_axis["roll"].format if "roll" in by_axis else _NO_FORMAT),
-        ("RATE_GAIN_PITCH", by_axis["pitch"].format if "pitch" in by_axis else _NO_FORMAT),
-        ("INTEGRAL_GAIN", spec.integral.gain.format if spec.integral else _NO_FORMAT),
-    )
+def _formats(formats: tuple[WordFormat, ...]) -> tuple[Field, ...]:
     return tuple(
-        _constant(name, 8 * i, 8, format_.fraction_bits, f"fraction bits of {name}")
-        for i, (name, format_) in enumerate(formats)
+        _constant(word.name, 8 * i, 8, word.fraction_bits, word.title)
+        for i, word in enumerate(formats)
     )
 
 
-def _scales(spec: FixedPointSpec) -> tuple[Field, ...]:
-    bits = 0 if spec.integral is None else spec.integral.fraction_bits
+def _scales(spec: FixedPointSpec, core: CoreFacts) -> tuple[Field, ...]:
     return (
-        _constant("BIAS_FRACTION_BITS", 0, 8, bits, "fraction bits of a bias"),
+        *_formats(core.formats[FORMATS_A_WORD:]),
         _constant("GRAVITY_COUNT", 16, 16, spec.gravity_count, "accelerometer count of 1 g"),
     )

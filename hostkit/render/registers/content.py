@@ -2,7 +2,9 @@
 
 from typing import Final
 
+from hostkit.filters.core import CoreFacts
 from hostkit.records import Axis, FilterDesign
+from hostkit.render.core_context import core_facts
 from hostkit.render.fpga_options import DEFAULT_FPGA_OPTIONS, FpgaOptions
 from hostkit.render.registers.constants import constant_registers
 from hostkit.render.registers.records import WORD_BYTES, Access, Field, Kind, Register, RegisterMap
@@ -11,6 +13,7 @@ from hostkit.spec import FixedPointSpec
 
 CONTROL_ADDRESS: Final = 0x24
 SAMPLE_ADDRESS: Final = 0x80
+SAMPLE_COUNTS_ADDRESS: Final = 0x9C
 COUNTS_ADDRESS: Final = 0xC0
 
 EVENTS: Final = (
@@ -45,14 +48,17 @@ def register_map(
     Raises
     ------
     HostkitError
-        If the sensor cannot be set as the design asks.
+        If the sensor cannot be set as the design asks, the filter has no core, or it has more
+        settings than there is room for.
     """
+    core = core_facts(spec, pipelined=options.pipelined)
     return RegisterMap(
         registers=(
-            *constant_registers(design, spec, options),
+            *constant_registers(design, spec, options, core),
             *_control_registers(),
-            *setting_registers(spec),
-            *_sample_registers(spec),
+            *setting_registers(design, spec),
+            *_sample_registers(spec, core),
+            *_count_registers(),
             *_counter_registers(),
         )
     )
@@ -66,15 +72,7 @@ def _control_registers() -> tuple[Register, ...]:
         ("INTERRUPTS", "Events that raise the interrupt.", _interrupts()),
         ("UART_RX", "The byte the link received; a read takes it.", _uart()),
     )
-    return tuple(
-        Register(
-            name=name,
-            address=CONTROL_ADDRESS + WORD_BYTES * i,
-            description=description,
-            fields=fields,
-        )
-        for i, (name, description, fields) in enumerate(groups)
-    )
+    return _registers(CONTROL_ADDRESS, groups)
 
 
 def _bit(
@@ -156,7 +154,7 @@ def _uart() -> tuple[Field, ...]:
     )
 
 
-def _sample_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
+def _sample_registers(spec: FixedPointSpec, core: CoreFacts) -> tuple[Register, ...]:
     words = (
         _word("SAMPLE_NUMBER", "sequence", "Number of the sample."),
         _word("TIME_LOW", "time_us", "Microseconds; a read keeps TIME_HIGH."),
@@ -176,17 +174,33 @@ def _sample_registers(spec: FixedPointSpec) -> tuple[Register, ...]:
                 ),
             ),
         ),
-        *(_axis_word("ANGLE", axis, axis in spec.axes) for axis in _AXES),
-        *(_axis_word("BIAS", axis, axis in spec.axes and bool(spec.hidden)) for axis in _AXES),
+        *(_angle_word(axis, axis in spec.axes) for axis in _AXES),
+        *(
+            _word(port.name.upper(), port.name, port.title, "signed", port.word is not None)
+            for port in core.hidden_ports
+        ),
+    )
+    return _registers(SAMPLE_ADDRESS, words)
+
+
+def _count_registers() -> tuple[Register, ...]:
+    words = (
         _counts("ACCEL_XY", "Specific force.", "accel_x", "accel_y"),
         _counts("ACCEL_Z_TEMPERATURE", "Specific force and temperature.", "accel_z", "temperature"),
         _counts("GYRO_XY", "Angular rate.", "gyro_x", "gyro_y"),
         _counts("GYRO_Z", "Angular rate.", "gyro_z"),
     )
+    return _registers(SAMPLE_COUNTS_ADDRESS, words)
+
+
+def _registers(
+    address: int, words: tuple[tuple[str, str, tuple[Field, ...]], ...]
+) -> tuple[Register, ...]:
+    """Return registers of successive addresses."""
     return tuple(
         Register(
             name=name,
-            address=SAMPLE_ADDRESS + WORD_BYTES * i,
+            address=address + WORD_BYTES * i,
             description=description,
             fields=fields,
         )
@@ -213,13 +227,9 @@ def _word(
     return (name, description, (field,))
 
 
-def _axis_word(kind: str, axis: Axis, present: bool) -> _Word:
-    text = {
-        "ANGLE": f"Angle of {axis}, half turns / 2**31.",
-        "BIAS": f"Bias of the gyroscope, {axis}, with BIAS_FRACTION_BITS.",
-    }[kind]
-    name = f"{kind}_{axis.upper()}"
-    return _word(name, name.lower(), text, "signed", present)
+def _angle_word(axis: Axis, present: bool) -> _Word:
+    name = f"ANGLE_{axis.upper()}"
+    return _word(name, name.lower(), f"Angle of {axis}, half turns / 2**31.", "signed", present)
 
 
 def _counts(name: str, description: str, *elements: str) -> _Word:

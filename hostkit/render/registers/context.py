@@ -89,6 +89,16 @@ class SettingContext:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class NarrowSettings:
+    """Settings of one kind of less than a word."""
+
+    width: int
+    top: int
+    kind: str
+    registers: tuple[SettingContext, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ElementContext:
     """One element of the record of what comes from the core."""
 
@@ -124,8 +134,10 @@ class RegistersContext:
         Those that the design has, and the fields of EVENTS.
     all_settings
         With those that it lacks.
-    coefficients
-        Present settings of less than a word.
+    narrow
+        Present settings of less than a word, by kind.
+    last_setting
+        Index of the last of all settings.
     known, written
         Words that exist, and those that a write may go to.
     """
@@ -135,8 +147,9 @@ class RegistersContext:
     inputs: tuple[ElementContext, ...]
     all_settings: tuple[SettingContext, ...]
     settings: tuple[SettingContext, ...]
-    coefficients: tuple[SettingContext, ...]
+    narrow: tuple[NarrowSettings, ...]
     events: tuple[FieldContext, ...]
+    last_setting: int
     setting_words: WordRange
     known: tuple[WordRange, ...]
     written: tuple[WordRange, ...]
@@ -154,8 +167,9 @@ def registers_context(registers: RegisterMap) -> RegistersContext:
         inputs=_inputs(registers),
         all_settings=settings,
         settings=tuple(s for s in settings if s.present),
-        coefficients=tuple(s for s in settings if s.present and s.top < WORD_BITS - 1),
+        narrow=_narrow(settings),
         events=next(r.fields for r in laid if r.name == "EVENTS"),
+        last_setting=len(settings) - 1,
         setting_words=_ranges(words)[0],
         known=_ranges(registers.registers),
         written=_ranges([r for r in registers.registers if r.writable]),
@@ -177,6 +191,19 @@ def _setting(register: Register) -> SettingContext:
         kind=field.kind,
         top=field.high,
         present=field.present,
+    )
+
+
+def _narrow(settings: tuple[SettingContext, ...]) -> tuple[NarrowSettings, ...]:
+    few = [s for s in settings if s.present and s.top < WORD_BITS - 1]
+    return tuple(
+        NarrowSettings(
+            width=top + 1,
+            top=top,
+            kind=kind,
+            registers=tuple(s for s in few if (s.kind, s.top) == (kind, top)),
+        )
+        for kind, top in sorted({(s.kind, s.top) for s in few})
     )
 
 

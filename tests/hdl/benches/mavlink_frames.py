@@ -5,7 +5,9 @@ import random
 
 from hostkit.dialect import python_module
 
-WIDE = ("angle_roll", "angle_pitch", "bias_roll", "bias_pitch")
+BIASES = () if "WORDS" in os.environ else ("bias_roll", "bias_pitch")
+"""A core that tells its state has no ports of them."""
+WIDE = ("angle_roll", "angle_pitch", *BIASES)
 COUNTS = ("accel_x", "accel_y", "accel_z", "temperature", "gyro_x", "gyro_y", "gyro_z")
 FLAGS = ("restarted", "saturated", "retuned")
 
@@ -40,6 +42,12 @@ def frame_of_sample(
         flags=flags,
         hidden=[*hidden, 0, 0][:2],
     )
+    return _packed(message, number)
+
+
+def frame_of_state(sequence: int, words: list[int], number: int) -> bytes:
+    padded = [*words, *([0] * (24 - len(words)))]
+    message = python_module().MAVLink_tilt_state_message(sequence=sequence, words=padded)
     return _packed(message, number)
 
 

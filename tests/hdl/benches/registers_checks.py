@@ -11,7 +11,6 @@ from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
 from hostkit.filters import FILTERS
 from hostkit.render.registers import Field, register_map
-from hostkit.render.registers.setting_registers import settings_of
 
 DESIGN = {
     "all": designs.all_parameters,
@@ -20,7 +19,7 @@ DESIGN = {
 }[os.environ.get("DESIGN", "all")]()
 SPEC = FILTERS["complementary"].lower(DESIGN)
 MAP = register_map(DESIGN, SPEC)
-PRESENT = [setting for setting in settings_of(SPEC) if setting.raw is not None]
+PRESENT = [s for s in FILTERS[SPEC.filter].setting_words(DESIGN, SPEC) if s.raw is not None]
 EVENTS = [field.element for field in MAP.register("EVENTS").fields]
 BY_ADDRESS = {register.address: register for register in MAP.registers}
 ENABLE, CLEAR, COMMIT, RESTORE = 1, 2, 4, 8
@@ -60,7 +59,7 @@ def signed(value: int, bits: int) -> int:
 
 def word_of(setting, raw: int) -> int:
     """A setting as a read shows it."""
-    return signed(raw, setting.width) & 0xFFFFFFFF if setting.kind == "signed" else raw
+    return signed(raw, setting.width) & 0xFFFFFFFF if setting.signed else raw
 
 
 async def start(dut) -> None:
