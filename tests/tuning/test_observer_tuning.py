@@ -107,8 +107,8 @@ def test_what_cannot_be_tuned_is_refused() -> None:
         problem(recording, free=("kt",), fixed=(FixedParameter(name="kt", value=0.1),))
     with pytest.raises(DesignError, match="gyro_bias = 9"):
         problem(recording, fixed=(FixedParameter(name="gyro_bias", value=9.0),))
+    narrow = SearchRange(name="kv", lowest=2.0, highest=1.0, is_log=True)
     with pytest.raises(DesignError, match="range of kv"):
-        narrow = SearchRange(name="kv", lowest=2.0, highest=1.0, is_log=True)
         problem(recording, ranges=(narrow,))
     with pytest.raises(RecordingError, match="no reference"):
         problem(replace(recording, up_reference=None))

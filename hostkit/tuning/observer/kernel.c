@@ -12,7 +12,7 @@ typedef long long mask __attribute__((vector_size(8 * HK_LANES)));
 
 /* Parameters of a candidate, in the order of its column. */
 enum {
-    KT, KV, KB, START_END, REST_RATE, REST_FORCE, REST_GAIN, LEAD,
+    KT, KV, KB, START_END, REST_RATE, REST_FORCE, REST_GAIN, LEAD, CLIP_RATE,
     BIAS_X, BIAS_Y, BIAS_Z, RATE_SCALE_X, RATE_SCALE_Y, RATE_SCALE_Z,
     FORCE_OFFSET_X, FORCE_OFFSET_Y, FORCE_OFFSET_Z, FORCE_SCALE_X, FORCE_SCALE_Y, FORCE_SCALE_Z,
     PARAMETERS
@@ -33,14 +33,16 @@ typedef struct {
     double mean_weight;
     double rest_s;
     double start_gain;
-    double restart_gain;
+    double clip_gain;
     double bias_limit;
     double acceleration_limit;
     double correction_limit;
     double start_limit;
     double lead_limit;
     double gravity;
+    double first_force;
     double body[9]; /* rows: body axes in sensor axes */
+    int first_rounds;
     int quantity;   /* 0 inclination, 1 roll, 2 pitch */
     int squared;
 } hk_terms;
@@ -88,31 +90,54 @@ static inline lanes force_of(const lanes *p, const double *force, int i)
     return (1.0 + p[FORCE_SCALE_X + i]) * (force[i] - p[FORCE_OFFSET_X + i]);
 }
 
+static inline void normalise(lanes q[4])
+{
+    const lanes more = 0.5 * (1.0 - (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]));
+
+    for (int i = 0; i < 4; i++) {
+        q[i] += more * q[i];
+    }
+}
+
 static void load(state *s, const lanes *p, const hk_terms *t, const double *rate,
                  const double *force)
 {
-    const lanes x = force_of(p, force, 0), y = force_of(p, force, 1), z = force_of(p, force, 2);
-    const lanes size = root(x * x + y * y + z * z);
-    const mask upright = z >= 0;
-    lanes length;
+    lanes half[3];
+    mask upright;
 
-    s->q[0] = chosen(upright, size + z, y);
-    s->q[1] = chosen(upright, y, size - z);
-    s->q[2] = chosen(upright, -x, all(0));
-    s->q[3] = chosen(upright, all(0), x);
-    length = root(s->q[0] * s->q[0] + s->q[1] * s->q[1] + s->q[2] * s->q[2] + s->q[3] * s->q[3]);
-    for (int i = 0; i < 4; i++) {
-        s->q[i] = chosen(size > 0, s->q[i] / length, all(i == 0));
-    }
-    s->v[0] = s->v[1] = all(0);
     for (int i = 0; i < 3; i++) {
+        half[i] = clamped(force_of(p, force, i) / t->gravity, all(t->first_force)) * 0.5;
         s->b[i] = (1.0 + p[RATE_SCALE_X + i]) * p[BIAS_X + i];
         s->rate_mean[i] = all(rate[i]);
         s->force_mean[i] = all(force[i]);
         s->turn[i] = all(0);
     }
-    s->alpha = chosen(p[START_END] <= t->start_gain, all(t->start_gain), all(0));
+    upright = half[2] >= 0;
+    s->q[0] = chosen(upright, 0.5 + half[2], half[1]);
+    s->q[1] = chosen(upright, half[1], 0.5 - half[2]);
+    s->q[2] = chosen(upright, -half[0], all(0));
+    s->q[3] = chosen(upright, all(0), half[0]);
+    for (int i = 0; i < t->first_rounds; i++) {
+        normalise(s->q);
+    }
+    s->v[0] = s->v[1] = all(0);
+    s->alpha = chosen(p[START_END] < t->start_gain, all(t->start_gain), all(0));
     s->still = s->found = all(0);
+}
+
+/* The first rest: its mean rate is the bias, and the alignment begins again. */
+static inline void find_bias(state *s, const lanes *p, const hk_terms *t, mask rest)
+{
+    const mask first = rest & (s->found < 0.5);
+
+    for (int i = 0; i < 3; i++) {
+        const lanes mean = clamped((1.0 + p[RATE_SCALE_X + i]) * s->rate_mean[i],
+                                   all(t->bias_limit));
+
+        s->b[i] = chosen(first, mean, s->b[i]);
+    }
+    s->alpha = chosen(first & (p[START_END] < t->start_gain), all(t->start_gain), s->alpha);
+    s->found = chosen(first, all(1), s->found);
 }
 
 /* The running means; whether the sensor is at rest. */
@@ -155,16 +180,12 @@ static inline void propagate(lanes q[4], const lanes h[3])
 static inline void correct(lanes q[4], lanes x, lanes y)
 {
     const lanes q0 = q[0], q1 = q[1], q2 = q[2], q3 = q[3];
-    lanes more;
 
     q[0] = q0 - x * q1 - y * q2;
     q[1] = q1 + x * q0 + y * q3;
     q[2] = q2 + y * q0 - x * q3;
     q[3] = q3 + x * q2 - y * q1;
-    more = 0.5 * (1.0 - (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]));
-    for (int i = 0; i < 4; i++) {
-        q[i] += more * q[i];
-    }
+    normalise(q);
 }
 
 static inline void take(state *s, const lanes *p, const hk_terms *t, const double *rate,
@@ -175,7 +196,11 @@ static inline void take(state *s, const lanes *p, const hk_terms *t, const doubl
     const lanes gain = p[KT] * dt, kept = 1.0 - p[KV] * dt, limit = t->correction_limit / gain;
     lanes h[3], f[3], x_row[3], y_row[3], a_x, a_y, d_x, d_y, s_x, s_y, alpha;
     lanes *q = s->q;
+    const double largest = fmax(fmax(fabs(rate[0]), fabs(rate[1])), fabs(rate[2]));
 
+    find_bias(s, p, t, rest);
+    s->alpha = chosen((largest > p[CLIP_RATE]) & (s->alpha < t->clip_gain), all(t->clip_gain),
+                      s->alpha);
     for (int i = 0; i < 3; i++) {
         s->turn[i] = (1.0 + p[RATE_SCALE_X + i]) * rate[i] - s->b[i];
         h[i] = 0.5 * dt * s->turn[i];
@@ -198,10 +223,10 @@ static inline void take(state *s, const lanes *p, const hk_terms *t, const doubl
     alpha = s->alpha;
     s_x = clamped(alpha * a_y * (1.0 / t->gravity), all(t->start_limit));
     s_y = -clamped(alpha * a_x * (1.0 / t->gravity), all(t->start_limit));
-    s->v[0] *= 1.0 - alpha;
-    s->v[1] *= 1.0 - alpha;
     s->alpha = alpha - alpha * alpha;
-    s->alpha = chosen(s->alpha >= p[START_END], s->alpha, all(0));
+    s->alpha = chosen(s->alpha > p[START_END], s->alpha, all(0));
+    s->v[0] *= 1.0 - s->alpha;
+    s->v[1] *= 1.0 - s->alpha;
 
     correct(q, 0.5 * (d_x + s_x), 0.5 * (d_y + s_y));
     for (int i = 0; i < 3; i++) {

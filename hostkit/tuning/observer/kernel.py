@@ -1,6 +1,7 @@
 """The observer for many sets of parameters over a recording: in C, or the float model in turn."""
 
 import ctypes
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
@@ -9,7 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import inclination_rad, pitch_from_up, roll_from_up, to_body, wrap_rad
-from hostkit.filters.observer import limits
+from hostkit.filters.observer.limits import (
+    ACCELERATION_LIMIT_M_S2,
+    CLIP_GAIN,
+    FIRST_FORCE_G,
+    FIRST_ROUNDS,
+    LEAD_LIMIT_RAD,
+    START_GAIN,
+    START_LIMIT_RAD,
+    correction_limit_rad,
+    mean_shift,
+    rest_samples,
+)
 from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
 from hostkit.mounting import Mounting
 from hostkit.records import Objective, read_only
@@ -83,14 +95,16 @@ class _Terms(ctypes.Structure):
         ("mean_weight", ctypes.c_double),
         ("rest_s", ctypes.c_double),
         ("start_gain", ctypes.c_double),
-        ("restart_gain", ctypes.c_double),
+        ("clip_gain", ctypes.c_double),
         ("bias_limit", ctypes.c_double),
         ("acceleration_limit", ctypes.c_double),
         ("correction_limit", ctypes.c_double),
         ("start_limit", ctypes.c_double),
         ("lead_limit", ctypes.c_double),
         ("gravity", ctypes.c_double),
+        ("first_force", ctypes.c_double),
         ("body", ctypes.c_double * 9),
+        ("first_rounds", ctypes.c_int),
         ("quantity", ctypes.c_int),
         ("squared", ctypes.c_int),
     )
@@ -115,17 +129,19 @@ class Terms:
         period_s = self.period_s
         return _Terms(
             period_s=period_s,
-            mean_weight=2.0 ** -limits.mean_shift(period_s),
-            rest_s=limits.rest_samples(period_s) * period_s,
-            start_gain=limits.START_GAIN,
-            restart_gain=limits.START_GAIN,
+            mean_weight=2.0 ** -mean_shift(period_s),
+            rest_s=rest_samples(period_s) * period_s,
+            start_gain=START_GAIN,
+            clip_gain=CLIP_GAIN,
             bias_limit=BIAS_LIMIT_RAD_S,
-            acceleration_limit=limits.ACCELERATION_LIMIT_M_S2,
-            correction_limit=limits.correction_limit_rad(period_s),
-            start_limit=limits.START_LIMIT_RAD,
-            lead_limit=limits.LEAD_LIMIT_RAD,
+            acceleration_limit=ACCELERATION_LIMIT_M_S2,
+            correction_limit=correction_limit_rad(period_s),
+            start_limit=START_LIMIT_RAD,
+            lead_limit=LEAD_LIMIT_RAD,
             gravity=STANDARD_GRAVITY_M_S2,
+            first_force=FIRST_FORCE_G,
             body=(ctypes.c_double * 9)(*body.ravel()),
+            first_rounds=FIRST_ROUNDS,
             quantity=QUANTITY_NUMBER[self.quantity],
             squared=self.objective == "rmse",
         )
@@ -144,7 +160,7 @@ def candidate_table(values: dict[str, Vector], count: int, period_s: float) -> V
         start_end = np.minimum(np.where(start_s > 0.0, period_s / start_s, 1.0), 1.0)
     rows = [of(name, None, 0.0) for name in GAINS]
     rows += [start_end, of("rest_rate", None, NEVER), of("rest_force", None, NEVER)]
-    rows += [of("rest_gain", None, 0.0), of("lead", None, 0.0)]
+    rows += [of("rest_gain", None, 0.0), of("lead", None, 0.0), of("clip_rate", None, math.inf)]
     for name in ("gyro_bias", "gyro_scale", "accel_offset", "accel_scale"):
         rows += [of(name, axis, 0.0) for axis in SENSOR_AXES]
     return np.stack(rows)
