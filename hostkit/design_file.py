@@ -8,7 +8,6 @@ not part of it: other limits make no other device.
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields, replace
 from pathlib import Path
@@ -16,7 +15,9 @@ from typing import Any
 
 from hostkit.errors import DesignError
 from hostkit.files import write_aside
+from hostkit.json_object import JsonObject
 from hostkit.mounting import Mounting
+from hostkit.provenance import TERM_UNITS, CalibrationRecord, CalibrationTerm, TermKind
 from hostkit.records import (
     AXES,
     OBJECTIVES,
@@ -36,7 +37,7 @@ SIZE_LIMIT_BYTES = 16 * 2**20
 
 def to_document(design: FilterDesign) -> dict[str, Any]:
     """Return what the digest of a design is taken of, as plain JSON values."""
-    return {
+    document: dict[str, Any] = {
         "schema": SCHEMA,
         "filter": design.filter,
         "axes": design.axes,
@@ -47,6 +48,23 @@ def to_document(design: FilterDesign) -> dict[str, Any]:
         "parameters": {p.name: {"value": p.value, "unit": p.unit} for p in design.parameters},
         "tuning": None if design.tuning is None else _tuning_document(design.tuning),
     }
+    if design.calibration is not None:
+        document["calibration"] = _calibration_document(design.calibration)
+    return document
+
+
+def _calibration_document(record: CalibrationRecord) -> dict[str, Any]:
+    document = {key: value for key, value in asdict(record).items() if value is not None}
+    document["terms"] = {
+        term.name: {
+            "value": term.value,
+            "standard_error": term.standard_error,
+            "unit": TERM_UNITS[term.kind],
+        }
+        for term in record.terms
+    }
+    document["recordings"] = [asdict(recording) for recording in record.recordings]
+    return document
 
 
 def _tuning_document(tuning: TuningRecord) -> dict[str, Any]:
@@ -140,10 +158,13 @@ def from_document(document: object) -> FilterDesign:
     DesignError
         If anything in it is not as the schema says.
     """
-    top = _Reader(document, "design")
+    top = JsonObject(document, "design")
     if top.text("schema") != SCHEMA:
         raise DesignError(f"schema is {top.text('schema')!r}; this hostkit reads {SCHEMA!r}")
-    top.only("schema digest filter axes tilt mounting rate_hz sensor parameters tuning acceptance")
+    top.only(
+        "schema digest filter axes tilt mounting rate_hz sensor parameters tuning acceptance "
+        "calibration"
+    )
     sensor = top.inner("sensor")
     sensor.only("part gyro_full_scale_deg_s accel_full_scale_g low_pass_setting")
     return FilterDesign(
@@ -161,16 +182,17 @@ def from_document(document: object) -> FilterDesign:
         parameters=_parameters(top.inner("parameters")),
         tuning=None if top.value("tuning") is None else _tuning(top.inner("tuning")),
         acceptance=_acceptance(top.inner("acceptance")) if top.has("acceptance") else None,
+        calibration=_calibration(top.inner("calibration")) if top.has("calibration") else None,
     )
 
 
-def _acceptance(reader: "_Reader") -> Acceptance:
+def _acceptance(reader: JsonObject) -> Acceptance:
     names = tuple(item.name for item in fields(Acceptance))
     reader.only(" ".join(names))
     return Acceptance(**{name: reader.optional_number(name) for name in names})
 
 
-def _parameters(reader: "_Reader") -> tuple[Parameter, ...]:
+def _parameters(reader: JsonObject) -> tuple[Parameter, ...]:
     found = []
     for name in sorted(reader.keys()):
         if not name.isidentifier() or not name.isascii():
@@ -181,7 +203,7 @@ def _parameters(reader: "_Reader") -> tuple[Parameter, ...]:
     return tuple(found)
 
 
-def _tuning(reader: "_Reader") -> TuningRecord:
+def _tuning(reader: JsonObject) -> TuningRecord:
     reader.only(
         "objective optimiser seed particles iterations evaluations rmse_deg held_out_rmse_deg "
         "recordings versions"
@@ -201,89 +223,48 @@ def _tuning(reader: "_Reader") -> TuningRecord:
     )
 
 
-def _recording(reader: "_Reader") -> RecordingDigest:
+def _recording(reader: JsonObject) -> RecordingDigest:
     reader.only("name sha256 samples")
     return RecordingDigest(
         name=reader.text("name"), sha256=reader.text("sha256"), samples=reader.integer("samples")
     )
 
 
-class _Reader:
-    """A JSON object whose values are taken out by type; every refusal names the key."""
-
-    def __init__(self, value: object, where: str) -> None:
-        if not isinstance(value, dict):
-            raise DesignError(f"{where} is {_shown(value)}; it must be an object")
-        self._items: dict[str, object] = value
-        self._where = where
-
-    def keys(self) -> tuple[str, ...]:
-        return tuple(self._items)
-
-    def has(self, key: str) -> bool:
-        return key in self._items
-
-    def only(self, names: str) -> None:
-        """Refuse keys outside `names`, a list separated by spaces."""
-        unknown = sorted(set(self._items) - set(names.split()))
-        if unknown:
-            raise DesignError(
-                f"{self._where} has the unknown key {unknown[0]!r:.80}; it may have: {names}"
-            )
-
-    def value(self, key: str) -> object:
-        if key not in self._items:
-            raise DesignError(f"{self._where} lacks the key {key!r}")
-        return self._items[key]
-
-    def text(self, key: str) -> str:
-        value = self.value(key)
-        if not isinstance(value, str) or len(value) > 1000:
-            raise self._wrong(key, "a text of at most 1000 characters")
-        return value
-
-    def name(self, key: str) -> str:
-        value = self.text(key)
-        if not value.replace("-", "_").isidentifier() or not value.isascii():
-            raise self._wrong(key, "a name of letters, digits, hyphens and underscores")
-        return value
-
-    def choice(self, key: str, choices: tuple[Any, ...]) -> Any:
-        if self.value(key) not in choices:
-            raise self._wrong(key, "one of " + ", ".join(choices))
-        return self.value(key)
-
-    def number(self, key: str) -> float:
-        value = self.value(key)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._wrong(key, "a number")
-        if abs(value) > 1e18 or not math.isfinite(value):
-            raise self._wrong(key, "a finite number")
-        return float(value)
-
-    def optional_number(self, key: str) -> float | None:
-        return self.number(key) if key in self._items else None
-
-    def integer(self, key: str) -> int:
-        value = self.value(key)
-        if isinstance(value, bool) or not isinstance(value, int) or abs(value) >= 2**63:
-            raise self._wrong(key, "an integer of 64 bits")
-        return value
-
-    def inner(self, key: str) -> "_Reader":
-        return _Reader(self.value(key), f"{self._where}.{key}")
-
-    def items(self, key: str) -> tuple["_Reader", ...]:
-        value = self.value(key)
-        if not isinstance(value, list):
-            raise self._wrong(key, "a list")
-        return tuple(_Reader(v, f"{self._where}.{key}[{i}]") for i, v in enumerate(value))
-
-    def _wrong(self, key: str, wanted: str) -> DesignError:
-        shown = _shown(self._items[key])
-        return DesignError(f"{self._where}.{key} is {shown}; it must be {wanted}")
+def _calibration(reader: JsonObject) -> CalibrationRecord:
+    reader.only(" ".join(item.name for item in fields(CalibrationRecord)))
+    return CalibrationRecord(
+        gravity_m_s2=reader.number("gravity_m_s2"),
+        poses=reader.integer("poses"),
+        turns=reader.integer("turns"),
+        terms=_terms(reader.inner("terms")),
+        recordings=tuple(_recording(r) for r in reader.items("recordings")),
+        temperature_c=reader.optional_number("temperature_c"),
+        temperature_low_c=reader.optional_number("temperature_low_c"),
+        temperature_high_c=reader.optional_number("temperature_high_c"),
+        force_before_m_s2=reader.optional_number("force_before_m_s2"),
+        force_after_m_s2=reader.optional_number("force_after_m_s2"),
+        turn_before_deg=reader.optional_number("turn_before_deg"),
+        turn_after_deg=reader.optional_number("turn_after_deg"),
+    )
 
 
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+def _terms(reader: JsonObject) -> tuple[CalibrationTerm, ...]:
+    """Return the terms of a calibration in the order of their kinds."""
+    reader.only(" ".join(f"{kind}_{axis}" for kind in TERM_UNITS for axis in "xyz"))
+    return tuple(
+        _term(reader.inner(f"{kind}_{name}"), kind, axis)
+        for kind in TERM_UNITS
+        for axis, name in enumerate("xyz")
+        if reader.has(f"{kind}_{name}")
+    )
+
+
+def _term(reader: JsonObject, kind: TermKind, axis: int) -> CalibrationTerm:
+    reader.only("value standard_error unit")
+    reader.choice("unit", (TERM_UNITS[kind],))
+    return CalibrationTerm(
+        kind=kind,
+        axis=axis,
+        value=reader.number("value"),
+        standard_error=reader.number("standard_error"),
+    )

@@ -15,6 +15,10 @@ class DesignError(HostkitError):
     """A design file is malformed or asks for something impossible."""
 
 
+class CalibrationError(HostkitError):
+    """Recordings do not determine what a sensor reads wrong."""
+
+
 class FormatError(HostkitError):
     """A number does not fit the fixed-point format it was given."""
 

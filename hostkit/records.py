@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 
 from hostkit.errors import DesignError
 from hostkit.mounting import Mounting
+from hostkit.provenance import OBJECTIVES as OBJECTIVES
+from hostkit.provenance import CalibrationRecord
+from hostkit.provenance import Objective as Objective
+from hostkit.provenance import RecordingDigest as RecordingDigest
+from hostkit.provenance import TuningRecord as TuningRecord
 
 Axis = Literal["roll", "pitch"]
 AxisChoice = Literal["roll", "pitch", "both"]
 TiltMethod = Literal["atan2", "arcsin"]
-Objective = Literal["rmse", "mae"]
 
 AXES: Final[dict[AxisChoice, tuple[Axis, ...]]] = {
     "roll": ("roll",),
@@ -21,7 +25,6 @@ AXES: Final[dict[AxisChoice, tuple[Axis, ...]]] = {
     "both": ("roll", "pitch"),
 }
 TILT_METHODS: Final[tuple[TiltMethod, ...]] = ("atan2", "arcsin")
-OBJECTIVES: Final[tuple[Objective, ...]] = ("rmse", "mae")
 
 RATE_LIMITS_HZ: Final = (0.1, 8000.0)
 """Slowest and fastest sample rate of a design; 8 kHz is the MPU-6050's own gyroscope rate."""
@@ -49,35 +52,6 @@ class Parameter:
     name: str
     value: float
     unit: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingDigest:
-    """What a design remembers of a recording it was tuned on."""
-
-    name: str
-    sha256: str
-    samples: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TuningRecord:
-    """How a design was found, so that it can be found again.
-
-    `rmse_deg` is the figure on the recordings named here, that is, a training figure;
-    `held_out_rmse_deg` is the one on recordings while they were left out.
-    """
-
-    objective: Objective
-    optimiser: str
-    seed: int
-    particles: int
-    iterations: int
-    evaluations: int
-    rmse_deg: float
-    recordings: tuple[RecordingDigest, ...]
-    versions: tuple[tuple[str, str], ...]
-    held_out_rmse_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +107,7 @@ class FilterDesign:
     parameters: tuple[Parameter, ...]
     tuning: TuningRecord | None = None
     acceptance: Acceptance | None = None
+    calibration: CalibrationRecord | None = None
 
     def __post_init__(self) -> None:
         """Refuse a rate that no sensor has."""

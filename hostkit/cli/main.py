@@ -22,6 +22,7 @@ COMMANDS = {
     "import": "Turn another format into a recording.",
     "diagnose": "Say what a recording shows of sensor and motion.",
     "tune": "Find the filter for recordings; write a design.",
+    "calibrate": "Measure what a sensor reads wrong and put it into a design.",
     "evaluate": "Score a design on recordings.",
     "generate": "Render a design to C or VHDL.",
     "build": "Compile or analyse generated code.",
@@ -98,20 +99,30 @@ def _project_table(command: str) -> dict[str, Any]:
 
 
 def _by_parameter(command: click.Command, table: dict[str, Any]) -> dict[str, Any]:
-    """Turn option names into click's parameter names; refuse those the command does not have."""
+    """Turn option names into click's parameter names; refuse those the command does not have.
+
+    A group may have tables for its subcommands, such as ``[calibrate.imu]``.
+    """
+    subcommands = command.commands if isinstance(command, click.Group) else {}
+    inner = {
+        key: _by_parameter(subcommands[key], value)
+        for key, value in table.items()
+        if key in subcommands and isinstance(value, dict)
+    }
     parameters = {
         option.removeprefix("--").replace("-", "_"): str(parameter.name)
         for parameter in command.params
         for option in parameter.opts
         if option.startswith("--")
     }
-    for key in table:
+    own = {key: value for key, value in table.items() if key not in inner}
+    for key in own:
         if key.replace("-", "_") not in parameters:
             raise HostkitError(
                 f"{PROJECT_FILE} has {key!r} in [{command.name}]; it may have: "
                 + ", ".join(parameters)
             )
-    return {parameters[key.replace("-", "_")]: value for key, value in table.items()}
+    return {parameters[key.replace("-", "_")]: value for key, value in own.items()} | inner
 
 
 def main() -> None:

@@ -47,11 +47,11 @@ class Strapdown:
 
     def to_frame(self, vectors: Vector) -> Vector:
         """Turn vectors, shape ``(N, 3)``, from sensor axes into the frame."""
-        return _rotated(self.orientation, vectors)
+        return rotated(self.orientation, vectors)
 
     def to_sensor(self, vectors: Vector) -> Vector:
         """Turn vectors, shape ``(N, 3)``, from the frame into sensor axes."""
-        return _rotated(self.orientation * CONJUGATE, vectors)
+        return rotated(self.orientation * CONJUGATE, vectors)
 
     def filtered_up(self, eta: float, rows: IntArray | slice = EVERY) -> Vector:
         """Return up in the frame from a complementary filter in three dimensions, at some rows.
@@ -84,8 +84,8 @@ def strapdown(recording: Recording, bias_rad_s: Vector) -> Strapdown:
     """
     steps_s = np.diff(recording.time_s, prepend=recording.time_s[0])
     turn_rad = (recording.angular_rate_rad_s - bias_rad_s) * steps_s[:, None]
-    orientation = _accumulated(_quaternions(turn_rad))
-    force = _rotated(orientation, recording.specific_force_m_s2)
+    orientation = accumulated(quaternions(turn_rad))
+    force = rotated(orientation, recording.specific_force_m_s2)
     return Strapdown(orientation=orientation, force_m_s2=force)
 
 
@@ -97,7 +97,7 @@ def _unit(vectors: Vector) -> Vector:
     return up
 
 
-def _quaternions(turn_rad: Vector) -> Vector:
+def quaternions(turn_rad: Vector) -> Vector:
     """Return the rotations by `turn_rad`, shape ``(N, 3)``, as quaternions, ``(4, N)``."""
     angle = np.linalg.norm(turn_rad, axis=1)
     part = 0.5 * np.sinc(angle / (2.0 * np.pi))
@@ -118,7 +118,7 @@ def _product(a: Vector, b: Vector) -> Vector:
     )
 
 
-def _accumulated(steps: Vector) -> Vector:
+def accumulated(steps: Vector) -> Vector:
     """Return the products of the first 1, 2, ... N quaternions, shape ``(4, N)``.
 
     They are cut into blocks of about root N, which are multiplied up side by side.
@@ -142,7 +142,7 @@ def _accumulated(steps: Vector) -> Vector:
     return unit
 
 
-def _rotated(quaternion: Vector, vectors: Vector) -> Vector:
+def rotated(quaternion: Vector, vectors: Vector) -> Vector:
     """Return vectors, shape ``(N, 3)``, turned by unit quaternions ``(4, N)``.
 
     ``v + w t + u x t`` with ``t = 2 u x v`` for a quaternion of real part w, imaginary part u.

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.filters.core import FilterCore
+from hostkit.filters.sensor_terms import Calibrated, take_no_terms
+from hostkit.provenance import CalibrationTerm
 from hostkit.records import FilterDesign
 from hostkit.spec import FixedPointSpec
 
@@ -189,6 +191,8 @@ class Filter(Generic[SpecT]):
         What the registers of an FPGA can change, in the order of ``hk_settings_t``.
     core
         Its VHDL core; None where there is none.
+    calibrated
+        A design with what it has a place for of the terms of a calibration.
     """
 
     name: str
@@ -203,3 +207,4 @@ class Filter(Generic[SpecT]):
     context: Callable[[FilterDesign, SpecT], object]
     setting_words: Callable[[FilterDesign, SpecT], tuple[SettingWord, ...]]
     core: FilterCore[SpecT] | None = None
+    calibrated: Callable[[FilterDesign, tuple[CalibrationTerm, ...]], Calibrated] = take_no_terms

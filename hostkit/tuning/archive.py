@@ -89,12 +89,20 @@ class ArchivedTask:
         """Return the same with other threads; both remember together."""
         return replace(self, task=self.task.with_jobs(jobs))
 
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual.
+
+        They decide where the recordings do not: shape ``(P,)``.
+        """
+        return self.task.preference(points)
+
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points, rad, and remember them."""
         sums = self.task.block_sums(points, self.blocks)
         self._kept.append((points.copy(), sums))
         counts = self.block_counts(1)[:, :, 0, None]
-        return np.asarray(self.metric(sums.sum(axis=2), counts).mean(axis=(0, 1)))
+        cost = self.metric(sums.sum(axis=2), counts).mean(axis=(0, 1))
+        return np.asarray(cost * self.preference(points))
 
     def visited(self) -> Visited:
         """Return all that is remembered."""

@@ -59,6 +59,13 @@ class Problem:
         """Return the same with other threads."""
         return replace(self, jobs=jobs)
 
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual.
+
+        They decide where the recordings do not: shape ``(P,)``.
+        """
+        return np.ones(len(points))
+
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points, rad: the mean over recordings and axes of RMSE or MAE.
 

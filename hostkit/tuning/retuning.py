@@ -159,9 +159,10 @@ def _best_visited(problem: ArchivedTask, weights: Vector, counts: Vector) -> Vec
     """Return the best of the points that a search visited, for each set of weights."""
     visited = problem.visited()
     sums = visited.in_blocks(weights.shape[2])
+    preference = problem.preference(visited.points)
     found = np.full((len(weights), visited.points.shape[1]), np.nan)
     for i, one in enumerate(weights):
-        cost = weighted_cost(problem, sums, counts, one)
+        cost = weighted_cost(problem, sums, counts, one) * preference
         if np.isfinite(cost).any():
             found[i] = visited.points[int(np.nanargmin(cost))]
     return found

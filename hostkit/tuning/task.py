@@ -60,6 +60,12 @@ class Task(Protocol):
     def with_jobs(self, jobs: int) -> "Task":
         """Return the same with other threads."""
 
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual.
+
+        They decide where the recordings do not: shape ``(P,)``.
+        """
+
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points of shape ``(P, D)``, rad: shape ``(P,)``."""
 

@@ -18,7 +18,7 @@ FLOORS = (
     ("render",),
     ("dialect", "targets"),
     ("fleet", "reproduction"),
-    ("tuning", "smoothing"),
+    ("tuning", "calibration", "smoothing"),
     ("filters",),
     ("optimisers",),
     ("diagnosis",),
@@ -37,7 +37,9 @@ FLOORS = (
         "errors",
         "files",
         "identifiers",
+        "json_object",
         "literals",
+        "provenance",
     ),
 )
 """From top to bottom; an import may only point down, or stay within its room."""

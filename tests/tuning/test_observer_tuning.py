@@ -8,6 +8,7 @@ from recorded import SENSOR, recorded
 from hostkit.errors import DesignError, HostkitError, RecordingError
 from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.mounting import Mounting
+from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
 from hostkit.tuning.archive import archived
 from hostkit.tuning.kernel.library import library
@@ -57,7 +58,7 @@ def test_blocks_add_up_and_only_scored_samples_count() -> None:
     assert p.block_counts(4).sum() == valid.sum()
     rms = np.sqrt(p.block_sums(x[:1], 1)[0, 0, 0, 0] / valid.sum())
     assert p.rms_rad(x[0], 0) == pytest.approx(rms, rel=1e-6)
-    assert p.cost(x)[0] == pytest.approx(rms, rel=1e-6)
+    assert p.cost(x)[0] == pytest.approx(rms * p.preference(x)[0], rel=1e-6)
 
 
 def test_a_search_beats_the_defaults_and_is_repeatable() -> None:
@@ -117,3 +118,10 @@ def test_what_cannot_be_tuned_is_refused() -> None:
     every = tuple(FixedParameter(name=n, value=BY_NAME[n].default) for n in EVERY)
     with pytest.raises(HostkitError, match="every parameter is fixed"):
         problem(recording, fixed=every)
+
+
+def test_a_scale_that_no_motion_shows_stays_near_nothing() -> None:
+    still = recorded("rest", duration_s=10.0, errors=SensorErrors())
+    p = archived(problem(still, free=("gyro_scale",)), 16)
+    found = search(p, TuningOptions(filter="observer", iterations=40), "qpso")
+    assert np.abs(found.x).max() < 0.02

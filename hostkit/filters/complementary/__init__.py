@@ -1,5 +1,6 @@
 """The complementary filter of one or two tilt axes."""
 
+from hostkit.filters.complementary.calibration import calibrated
 from hostkit.filters.complementary.context import filter_context
 from hostkit.filters.complementary.core import CORE
 from hostkit.filters.complementary.facts import facts
@@ -51,6 +52,7 @@ __all__ = [
     "ParameterKind",
     "RunTimeParameter",
     "Settings",
+    "calibrated",
     "crossover_hz",
     "device_parameters",
     "eta_from_tau",
@@ -94,4 +96,5 @@ COMPLEMENTARY: Filter[ComplementarySpec] = Filter(
     context=filter_context,
     setting_words=setting_words,
     core=CORE,
+    calibrated=calibrated,
 )

@@ -28,6 +28,7 @@ from hostkit.filters.observer.run_time import (
 from hostkit.filters.observer.setting_words import setting_words
 from hostkit.filters.observer.settings import Settings, settings
 from hostkit.filters.observer.spec import ObserverSpec
+from hostkit.filters.sensor_terms import take_sensor_terms
 
 __all__ = [
     "BIAS_LIMIT_RAD_S",
@@ -74,4 +75,5 @@ OBSERVER: Filter[ObserverSpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    calibrated=take_sensor_terms,
 )

@@ -67,8 +67,15 @@ class ObserverProblem:
         """Return the same with other threads."""
         return replace(self, jobs=jobs)
 
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual.
+
+        They decide where the recordings do not: shape ``(P,)``.
+        """
+        return self.space.preference(points)
+
     def cost(self, points: Vector) -> Vector:
-        """Return the cost of points, rad: the mean over recordings of RMSE or MAE.
+        """Return the cost of points, rad: mean RMSE or MAE of the recordings, times preference.
 
         Parameters
         ----------
@@ -81,7 +88,8 @@ class ObserverProblem:
             Costs, shape ``(P,)``.
         """
         sums, counts = self.block_sums(points, 1), self.block_counts(1)
-        return np.asarray(self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1)))
+        cost = self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1))
+        return np.asarray(cost * self.preference(points))
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE or MAE of sums over so many samples."""

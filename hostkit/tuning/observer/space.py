@@ -48,6 +48,19 @@ RANGES: Final[tuple[SearchRange, ...]] = (
 """Where tuned values on public recordings lie, with room around them; rates of decay and gains are
 searched as logarithms."""
 
+USUAL: Final[dict[FreeName, float]] = {
+    "lead": 0.01,
+    "gyro_bias": 1.0 * RAD_PER_DEG,
+    "gyro_scale": 0.03,
+    "accel_offset": 0.25,
+    "accel_scale": 0.03,
+}
+"""How far calibrations are from zero in ordinary sensors, in the unit of a design: scale factors
+within the 3 % of the MPU-6050's data sheet."""
+
+HOLD: Final = 2e-3
+"""Share by which the cost grows where a calibration is that far from zero."""
+
 RANGE_BY_NAME: Final[dict[FreeName, SearchRange]] = {r.name: r for r in RANGES}
 
 
@@ -67,6 +80,18 @@ class ObserverSpace:
     def upper(self) -> Vector:
         """Upper corner of the box, shape ``(D,)``."""
         return np.array([d.upper for d in self.dimensions])
+
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors that hold points of shape ``(P, D)`` to what is usual, ``(P,)``.
+
+        The scale of an axis that the recordings do not turn about would be anything else.
+        """
+        factor = np.ones(len(points))
+        for i, dimension in enumerate(self.dimensions):
+            usual = USUAL.get(dimension.name)
+            if usual is not None:
+                factor += HOLD * (points[:, i] / usual) ** 2
+        return factor
 
     def values(self, points: Vector) -> dict[str, Vector]:
         """Return every parameter of points of shape ``(P, D)`` by its name in a design."""
