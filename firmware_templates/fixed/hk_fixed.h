@@ -89,9 +89,10 @@ static inline int32_t hk_scale(int32_t gain, int16_t count)
 #if HK_LONG_PRODUCT
     return (int32_t)(((int64_t)gain * count) >> 15);
 #else
-    const int32_t low = (int32_t)count * (uint16_t)gain;
+    /* Of the 16 bits that the product of words leaves out, the first. */
+    const uint16_t low = (uint16_t)(1U * (uint16_t)gain * (uint16_t)count);
 
-    return (int32_t)count * (int16_t)(gain >> 16) * 2 + (low >> 15);
+    return hk_product(gain, (int32_t)((uint32_t)count << 16)) * 2 + (int32_t)(low >> 15);
 #endif
 }
 

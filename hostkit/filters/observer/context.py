@@ -122,7 +122,7 @@ def _constants(spec: ObserverSpec) -> tuple[ConstantContext, ...]:
         ("first_rounds", FIRST_ROUNDS, "renormalisations of the first orientation"),
         ("start_gain", spec.start_gain, "31"),
         ("start_end", spec.start_end, "31"),
-        ("start_limit", START_LIMIT, "half-angle, 27"),
+        ("start_limit", START_LIMIT, "half-angle, 26"),
         ("clip_gain", CLIP_GAIN, "31"),
         ("clip_count", spec.clip_count or 0, "counts"),
         ("mean_shift", spec.mean_shift, "running means forget 2^-this at each sample"),

@@ -49,6 +49,7 @@ from hostkit.filters.observer.limits import (
     FIRST_FORCE_G,
     FIRST_ROUNDS,
     LEAD_LIMIT_RAD,
+    REST_RATE_LIMIT_RAD_S,
     START_GAIN,
     START_LIMIT_RAD,
     correction_limit_rad,
@@ -191,7 +192,7 @@ class _Step:
             return False
         quiet = _follow(state.rate_mean, rate, self.mean_weight) <= rest.rate_rad_s
         quiet &= _follow(state.force_mean, force, self.mean_weight) <= rest.force_m_s2
-        quiet &= max(abs(mean) for mean in state.rate_mean) <= BIAS_LIMIT_RAD_S
+        quiet &= max(abs(mean) for mean in state.rate_mean) <= REST_RATE_LIMIT_RAD_S
         state.still_s = min(state.still_s + self.period_s, self.rest_s) if quiet else 0.0
         return state.still_s > self.rest_s - 0.5 * self.period_s
 

@@ -27,8 +27,8 @@ HALF_PER_G = round(2**35 / (2.0 * 9.80665))
 """1 / (2 g) with 35 fraction bits: from a force to the half-angle that it is off."""
 
 CLIP_GAIN = 2**26
-START_LIMIT = 2**25
-"""Largest half-angle of the alignment in a sample, 27 fraction bits."""
+START_LIMIT = 2**24
+"""Largest half-angle of the alignment in a sample, 26 fraction bits."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -192,7 +192,7 @@ def _first_rest(spec: ObserverSpec, state: _State) -> None:
 
 def _upright(spec: ObserverSpec, force: list[int]) -> list[int]:
     """Return the turn that lays a specific force upwards, 30."""
-    limit, shift = spec.first_force_limit, spec.formats.acceleration_shift
+    limit, shift = spec.first_force_limit, spec.formats.first_force_shift
     x, y, z = ((_clamped(f, limit) << shift) * HALF_PER_G >> 32 for f in force)
     q = [2**29 + z, y, -x, 0] if z >= 0 else [y, 2**29 - z, 0, x]
     for _ in range(FIRST_ROUNDS):
@@ -232,7 +232,7 @@ def _earth_rows(q: list[int]) -> tuple[Row, Row]:
 
 
 def _accelerations(spec: ObserverSpec, rows: tuple[Row, Row], force: list[int]) -> tuple[int, int]:
-    """Return the horizontal acceleration, m/s^2, 25."""
+    """Return the horizontal acceleration, m/s^2, 24."""
     x, y, z = force
     limit, shift = spec.acceleration_limit, spec.formats.acceleration_shift
     along_x, along_y = ((a * x >> 32) + (b * y >> 32) + (c * z >> 32) for a, b, c in rows)
@@ -252,8 +252,8 @@ def _correct(spec: ObserverSpec, state: _State, accel_x: int, accel_y: int) -> t
 def _align(spec: ObserverSpec, state: _State, accel_x: int, accel_y: int) -> tuple[int, int]:
     """Return the half-angles that the alignment at the start asks for, 32."""
     per_force = state.start_gain * HALF_PER_G >> 32
-    x = _clamped(accel_x * per_force >> 32, START_LIMIT) << 5
-    y = _clamped(accel_y * per_force >> 32, START_LIMIT) << 5
+    x = _clamped(accel_x * per_force >> 32, START_LIMIT) << 6
+    y = _clamped(accel_y * per_force >> 32, START_LIMIT) << 6
     gain = state.start_gain - ((state.start_gain * state.start_gain >> 32) << 1)
     state.start_gain = gain = gain if gain > spec.start_end else 0
     state.correction = [part - ((part * gain >> 32) << 1) for part in state.correction]

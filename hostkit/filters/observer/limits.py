@@ -3,8 +3,9 @@
 import math
 from typing import Final
 
-ACCELERATION_LIMIT_M_S2: Final = 40.0
-"""Largest horizontal acceleration that is believed, for each of its two parts."""
+ACCELERATION_LIMIT_M_S2: Final = 80.0
+"""Largest horizontal acceleration that is believed, for each of its two parts. Impacts must be
+taken whole: what is cut off them stays in the velocity."""
 
 CORRECTION_LIMIT_RAD_S: Final = 8.0
 CORRECTION_LIMIT_RAD: Final = 0.25
@@ -19,6 +20,9 @@ LEAD_LIMIT_RAD: Final = 1.0
 STEP_LIMIT_RAD: Final = 0.8
 """Largest turn within one sample, about each axis, that a design may allow: the series of the
 half-angle are good to 1e-3 of such a turn, and to 1e-6 of a quarter of it."""
+
+REST_RATE_LIMIT_RAD_S: Final = 0.2
+"""Largest mean rate of a sensor at rest: a faster one may be a slow turn."""
 
 REST_MEAN_S: Final = 0.5
 REST_TIME_S: Final = 1.0

@@ -18,6 +18,7 @@ from hostkit.filters.arctan import arctan_table
 from hostkit.filters.observer.limits import (
     ACCELERATION_LIMIT_M_S2,
     FIRST_FORCE_G,
+    REST_RATE_LIMIT_RAD_S,
     START_GAIN,
     STEP_LIMIT_RAD,
     correction_limit_rad,
@@ -84,7 +85,7 @@ def lower(design: FilterDesign) -> ObserverSpec:
         first_force_limit=_fixed(FIRST_FORCE_G * STANDARD_GRAVITY_M_S2, formats.force),
         correction_limit=_fixed(0.5 * correction_limit_rad(period_s), formats.correction),
         bias_limit=_fixed(0.5 * BIAS_LIMIT_RAD_S * period_s, formats.bias),
-        mean_limit=min(_fixed(BIAS_LIMIT_RAD_S / rad_s, 14), WORD_MAX),
+        mean_limit=min(_fixed(REST_RATE_LIMIT_RAD_S / rad_s, 14), WORD_MAX),
         mean_shift=mean_shift(period_s),
         rest_samples=rest_samples(period_s),
         start_gain=_fixed(START_GAIN, 31) if aligns else 0,
@@ -108,7 +109,7 @@ def _formats(design: FilterDesign, full_scale_m_s2: float) -> ObserverFormats:
     gain_bits = math.floor(31.0 - math.log2(BY_NAME["kb"].highest * period_s))
     bias = math.floor(BIAS_BITS - math.log2(0.5 * BIAS_LIMIT_RAD_S * period_s))
     return ObserverFormats(
-        force=min(math.floor(31.0 - math.log2(largest)), 27),
+        force=min(math.floor(31.0 - math.log2(largest)), 26),
         correction=correction,
         bias=max(min(bias, correction - 34 + gain_bits), 32),
         rest_shift=max(math.floor(-1.0 - math.log2(period_s)), 0),
@@ -117,7 +118,7 @@ def _formats(design: FilterDesign, full_scale_m_s2: float) -> ObserverFormats:
 
 def gain_bits(formats: ObserverFormats) -> tuple[int, int, int]:
     """Return the fraction bits of what multiplies acceleration, velocity and correction."""
-    return formats.correction + 7, 32, formats.bias + 34 - formats.correction
+    return formats.correction + 8, 32, formats.bias + 34 - formats.correction
 
 
 def gains_per_unit(period_s: float) -> tuple[float, float, float]:

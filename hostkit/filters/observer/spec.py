@@ -30,7 +30,12 @@ class ObserverFormats:
 
     @property
     def acceleration_shift(self) -> int:
-        """By how much specific force in the earth frame is shifted left, to 25 fraction bits."""
+        """By how much specific force in the earth frame is shifted left, to 24 fraction bits."""
+        return 26 - self.force
+
+    @property
+    def first_force_shift(self) -> int:
+        """By how much the force of the first sample is shifted left, to 27 fraction bits."""
         return 27 - self.force
 
     @property
@@ -56,7 +61,7 @@ class ObserverGains:
     Attributes
     ----------
     kt_raw
-        Correction per sample and acceleration with 25 fraction bits, times 2**32.
+        Correction per sample and acceleration with 24 fraction bits, times 2**32.
     kv_raw
         Share of the velocity that goes in a sample, times 2**32.
     kb_raw
