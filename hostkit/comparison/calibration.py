@@ -1,6 +1,6 @@
 """What peers get to read: a recording as it is, or put right as the design puts it right."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -97,6 +97,10 @@ class Readings:
         """Make the arrays read-only."""
         read_only(self.rate_rad_s)
         read_only(self.force_m_s2)
+
+    def scaled(self, gyro_scale: Vector) -> "Readings":
+        """Return the same with each axis of the gyroscope times 1 + scale, shape ``(3,)``."""
+        return replace(self, rate_rad_s=(1.0 + gyro_scale) * self.rate_rad_s)
 
     def led(self, up: Vector, lead_s: float) -> Vector:
         """Return directions of up told ahead, of unit length: up - lead w x up."""

@@ -25,6 +25,9 @@ from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
 from hostkit.tuning.search import search
 
 PARTICLES = 20
+SCALE_BUDGET = 40
+"""With fewer evaluations three more numbers cannot be searched."""
+
 Progress = Callable[[str], None]
 
 
@@ -142,7 +145,9 @@ def _own_rows(
             yield default_row(recordings, tuning, lead_s)
             if options.tune:
                 with tempfile.TemporaryDirectory(prefix="hostkit-") as folder:
-                    yield tuned_row(recordings, tuning, lead_s, Path(folder))
+                    yield tuned_row(
+                        recordings, tuning, lead_s, Path(folder), with_scale=options.gyro_scale
+                    )
     if any(peer.is_offline for peer in chosen_peers(options.peers)):
         progress("hostkit smooth")
         yield from smoother_row(recordings, _quantity(options), options.mounting, lead_s)
@@ -206,6 +211,8 @@ def _rows_of(problem: PeerProblem, options: CompareOptions) -> Iterator[Row]:
     if not options.tune:
         return
     planned = peer.evaluations(options.evaluations)
+    problem = replace(problem, is_scaled=options.gyro_scale and planned >= SCALE_BUDGET)
+    space = problem.space
     tuning = _tuning_options(options, peer.name, planned)
     kept = archived(problem, LEAST_UNITS)
     kept.cost(space.start[np.newaxis])
@@ -215,6 +222,7 @@ def _rows_of(problem: PeerProblem, options: CompareOptions) -> Iterator[Row]:
     yield replace(
         row,
         settings="tuned",
+        is_scaled=problem.is_scaled,
         each_rad=tuple(problem.each_rms_rad(space.values(x)).tolist()),
         held_out=cross_validate(kept, tuning) if options.held_out else None,
         parameters=space.design_parameters(x),

@@ -30,6 +30,9 @@ class CompareOptions:
         Whether peers, and hostkit's filters if there is no design, are also tuned.
     held_out
         Whether tuned filters are scored on recordings that were left out in turn.
+    gyro_scale
+        Whether the scale of the gyroscope is tuned too, for every filter that is tuned well
+        enough: three constants of the sensor, from which most of them gain.
     lead_s
         How far every filter that can is told ahead; None for what the design says, or none.
     calibrated_peers
@@ -44,6 +47,7 @@ class CompareOptions:
     peers: tuple[str, ...] = USUAL
     tune: bool = True
     held_out: bool = True
+    gyro_scale: bool = True
     lead_s: float | None = None
     calibrated_peers: bool = False
     evaluations: int = BUDGET

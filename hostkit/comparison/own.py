@@ -24,7 +24,7 @@ from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
 
-LEAD = "lead"
+LEAD, SCALE = "lead", "gyro_scale"
 LEAD_PARAMETER = Parameter(name="lead_s", value=0.0, unit="s")
 
 
@@ -76,7 +76,7 @@ def design_row(
 
 
 def tuned_row(
-    recordings: tuple[Recording, ...], options: TuningOptions, lead_s: float, folder: Path
+    recordings: tuple[Recording, ...], options: TuningOptions, lead_s: float, folder: Path, *, with_scale: bool
 ) -> Row:
     """Tune a filter of hostkit, and score it where it was tuned and where it was not.
 
@@ -84,6 +84,8 @@ def tuned_row(
     ----------
     folder
         For what does not fit the memory.
+    with_scale
+        Whether the scale of the gyroscope is tuned, where it is among what `tune` searches.
 
     Raises
     ------
@@ -94,6 +96,9 @@ def tuned_row(
     if lead_s:
         fixed = FixedParameter(name=LEAD, value=lead_s)
         options = replace(options, fixed=(*options.fixed, fixed))
+    if not with_scale:
+        free = tuple(name for name in TUNERS[options.filter].free if name != SCALE)
+        options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
     problem = archived(task, LEAST_UNITS) if task.is_dear else task
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
@@ -101,7 +106,12 @@ def tuned_row(
     each = tuple(problem.rms_rad(swarm.x, i) for i in range(len(recordings)))
     row = _row(options.filter, "tuned", each, problem.space.design_parameters(swarm.x), lead_s)
     held_out = cross_validate(problem, options) if options.held_out else None
-    return replace(row, held_out=held_out, evaluations=swarm.evaluations)
+    return replace(
+        row,
+        is_scaled=any(d.name == SCALE for d in problem.space.dimensions),
+        held_out=held_out,
+        evaluations=swarm.evaluations,
+    )
 
 
 def lead_of(design: FilterDesign) -> float:

@@ -10,60 +10,13 @@ from numpy.typing import NDArray
 
 from hostkit.comparison.calibration import Readings
 from hostkit.comparison.peer import Peer
+from hostkit.comparison.peer_space import PeerSpace
 from hostkit.mounting import Mounting
-from hostkit.records import Objective, Parameter
-from hostkit.tuning.dimension import Dimension
+from hostkit.records import Objective
 from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
 
 Vector = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PeerSpace:
-    """The box of a peer's parameters."""
-
-    peer: Peer
-
-    @property
-    def dimensions(self) -> tuple[Dimension, ...]:
-        """Return what is searched."""
-        return tuple(
-            Dimension(
-                name=p.name,
-                axis=None,
-                lower=math.log(p.lowest) if p.is_log else p.lowest,
-                upper=math.log(p.highest) if p.is_log else p.highest,
-                is_log=p.is_log,
-                shown_unit=p.unit,
-            )
-            for p in self.peer.parameters
-        )
-
-    @property
-    def lower(self) -> Vector:
-        """Lower corner of the box, shape ``(D,)``."""
-        return np.array([d.lower for d in self.dimensions])
-
-    @property
-    def upper(self) -> Vector:
-        """Upper corner of the box, shape ``(D,)``."""
-        return np.array([d.upper for d in self.dimensions])
-
-    @property
-    def start(self) -> Vector:
-        """Return the peer's own values as a point, shape ``(D,)``."""
-        pairs = zip(self.peer.parameters, self.peer.defaults, strict=True)
-        return np.array([math.log(value) if p.is_log else value for p, value in pairs])
-
-    def values(self, x: Vector) -> tuple[float, ...]:
-        """Return a point, shape ``(D,)``, as the peer's parameters."""
-        return tuple(d.value(float(c)) for d, c in zip(self.dimensions, x, strict=True))
-
-    def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
-        """Return a point as named parameters."""
-        pairs = zip(self.peer.parameters, self.values(x), strict=True)
-        return tuple(Parameter(name=p.name, value=value, unit=p.unit) for p, value in pairs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +27,8 @@ class PeerProblem:
     ----------
     lead_s
         How far the directions of up are told ahead, with the measured rate.
+    is_scaled
+        Whether the scale of the gyroscope is searched with the peer's own parameters.
     """
 
     peer: Peer
@@ -81,13 +36,14 @@ class PeerProblem:
     quantity: Quantity
     mounting: Mounting
     lead_s: float
+    is_scaled: bool = False
     objective: Objective = "rmse"
     jobs: int = 1
 
     @property
     def space(self) -> PeerSpace:
         """Return the box of the search."""
-        return PeerSpace(peer=self.peer)
+        return PeerSpace(peer=self.peer, is_scaled=self.is_scaled)
 
     @property
     def lengths(self) -> tuple[int, ...]:
@@ -104,9 +60,19 @@ class PeerProblem:
         return self
 
     def deviation_rad(self, values: tuple[float, ...], recording: int) -> Vector:
-        """Return the error over one recording, rad, shape ``(N,)``."""
+        """Return the error over one recording, rad, shape ``(N,)``.
+
+        Parameters
+        ----------
+        values
+            The peer's own parameters, then the scale of the gyroscope if there is more.
+        """
+        count = len(self.peer.parameters)
+        own, scales = values[:count], values[count:]
         one = self.readings[recording]
-        up = self.peer.run(one.rate_rad_s, one.force_m_s2, one.period_s, values)
+        if scales:
+            one = one.scaled(np.array(scales))
+        up = self.peer.run(one.rate_rad_s, one.force_m_s2, one.period_s, own)
         led = one.led(up, self.lead_s)
         return one.track.deviation_rad(led, self.quantity, self.mounting)
 
@@ -121,7 +87,12 @@ class PeerProblem:
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points of shape ``(P, D)``, rad: shape ``(P,)``."""
         sums, counts = self.block_sums(points, 1), self.block_counts(1)
-        return np.asarray(self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1)))
+        cost = self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1))
+        return np.asarray(cost * self.preference(points))
+
+    def preference(self, points: Vector) -> Vector:
+        """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual."""
+        return self.space.preference(points)
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE of sums over so many samples."""

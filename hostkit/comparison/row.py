@@ -24,6 +24,8 @@ class Row:
         Those of a given design, the filter's own, or those tuned on the same recordings.
     is_offline
         Whether it looks ahead, so that no device can run it.
+    is_scaled
+        Whether the scale of the gyroscope was tuned with the filter's own parameters.
     lead_s
         How far its angles are told ahead.
     each_rad
@@ -41,6 +43,7 @@ class Row:
     origin: Origin
     settings: Settings
     is_offline: bool = False
+    is_scaled: bool = False
     lead_s: float = 0.0
     each_rad: tuple[float, ...]
     held_out: HeldOut | None = None
