@@ -15,7 +15,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import up_from_quaternion
 from hostkit.comparison.peer import Peer, PeerParameter, package
 
 Vector = NDArray[np.float64]
@@ -37,7 +36,7 @@ def _run(
         gyr=rate_rad_s, acc=force_m_s2, frequency=1.0 / period_s, **named
     )
     quaternions = np.asarray(found.Q, dtype=np.float64)
-    return up_from_quaternion(quaternions * [1.0, -1.0, -1.0, -1.0] if is_inverse else quaternions)
+    return quaternions * [1.0, -1.0, -1.0, -1.0] if is_inverse else quaternions
 
 
 def run_mahony(

@@ -11,7 +11,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import up_from_quaternion
 from hostkit.comparison.peer import Peer, PeerParameter, package
 from hostkit.units import DEG_PER_RAD, STANDARD_GRAVITY_M_S2
 
@@ -66,7 +65,7 @@ def run_fusion(
     for k, (rate, force) in enumerate(zip(rate_deg_s, force_g, strict=True)):
         filter_.update_no_magnetometer(rate, force)
         quaternions[k] = filter_.get_quaternion()
-    return up_from_quaternion(quaternions)
+    return quaternions
 
 
 def _unbiased(module: Any, rate_deg_s: Vector, rate_hz: float, threshold_deg_s: float) -> Vector:

@@ -16,7 +16,7 @@ Vector = NDArray[np.float64]
 
 Run = Callable[[Vector, Vector, float, tuple[float, ...]], Vector]
 """Angular rate (rad/s) and specific force (m/s^2) in sensor axes, each ``(N, 3)``, the period (s) and
-the parameters of the peer, to directions of up in sensor axes, ``(N, 3)``."""
+the parameters of the peer, to orientations, sensor to earth with z up, as ``(N, 4)`` w, x, y, z."""
 
 LEAST_EVALUATIONS: Final = 8
 """However slow a peer is, so many points of its parameters are tried."""

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.attitude import up_from_quaternion
 from hostkit.comparison.calibration import Readings
 from hostkit.comparison.peer import Peer
 from hostkit.comparison.peer_space import PeerSpace
@@ -72,8 +73,8 @@ class PeerProblem:
         one = self.readings[recording]
         if scales:
             one = one.scaled(np.array(scales))
-        up = self.peer.run(one.rate_rad_s, one.force_m_s2, one.period_s, own)
-        led = one.led(up, self.lead_s)
+        orientation = self.peer.run(one.rate_rad_s, one.force_m_s2, one.period_s, own)
+        led = one.led(up_from_quaternion(orientation), self.lead_s)
         return one.track.deviation_rad(led, self.quantity, self.mounting)
 
     def each_rms_rad(self, values: tuple[float, ...]) -> Vector:

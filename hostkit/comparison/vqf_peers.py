@@ -11,7 +11,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import up_from_quaternion
 from hostkit.comparison.peer import Peer, PeerParameter, package
 
 Vector = NDArray[np.float64]
@@ -35,7 +34,7 @@ def _batch(
 ) -> Vector:
     filter_: Any = getattr(package("vqf", form), form)(period_s, **_named(values))
     found = filter_.updateBatch(rate_rad_s, force_m_s2)
-    return up_from_quaternion(found["quat6D"])
+    return np.asarray(found["quat6D"])
 
 
 def run_online(
@@ -58,7 +57,7 @@ def run_offline(
     """Run offline VQF over the whole recording."""
     smoother: Any = package("vqf", "offlineVQF").offlineVQF
     found = smoother(rate_rad_s, force_m_s2, None, period_s, params=_named(values))
-    return up_from_quaternion(found["quat6D"])
+    return np.asarray(found["quat6D"])
 
 
 VQF_PEERS: Final = (
