@@ -3,18 +3,13 @@
 from dataclasses import dataclass
 
 from hostkit.filters.factor import FactorContext, factor
+from hostkit.filters.observer.float_context import RealContext, real_constants
 from hostkit.filters.observer.integer_angles import LEAD_LIMIT
-from hostkit.filters.observer.integer_model import (
-    CLIP_GAIN,
-    FIFTH,
-    HALF_PER_G,
-    SIXTH,
-    START_LIMIT,
-    TWENTY_FOURTH,
-)
+from hostkit.filters.observer.integer_geometry import FIFTH, HALF_PER_G, SIXTH, TWENTY_FOURTH
+from hostkit.filters.observer.integer_model import CLIP_GAIN, START_LIMIT
 from hostkit.filters.observer.limits import FIRST_ROUNDS
-from hostkit.filters.observer.parameters import SENSOR_AXES
-from hostkit.filters.observer.run_time import RUN_TIME, limits, per_unit, words
+from hostkit.filters.observer.parameters import BY_NAME, SENSOR_AXES
+from hostkit.filters.observer.run_time import RUN_TIME, RunTimeParameter, limits, per_unit, words
 from hostkit.filters.observer.spec import ObserverFormats, ObserverSpec
 from hostkit.literals import float32_text
 from hostkit.records import FilterDesign
@@ -38,8 +33,8 @@ class ParameterContext:
     ----------
     name, link_name
         Name of its number in small letters, and its name on the link.
-    raw
-        Its integer in the design.
+    raw, value
+        Its integer in the design, and its value as C99 hexadecimal text.
     unit
         Unit of its value.
     lowest, highest
@@ -51,6 +46,7 @@ class ParameterContext:
     name: str
     link_name: str
     raw: int
+    value: str
     unit: str
     lowest: str
     highest: str
@@ -74,6 +70,8 @@ class ObserverContext:
         How many hidden words there are.
     rad_s_per_count
         Weight of a count of rate, C99 hexadecimal text.
+    real
+        The constants of the code in floats.
     """
 
     formats: ObserverFormats
@@ -85,6 +83,7 @@ class ObserverContext:
     leads: bool
     state_words: int
     rad_s_per_count: str
+    real: tuple[RealContext, ...]
 
 
 def filter_context(design: FilterDesign, spec: ObserverSpec) -> ObserverContext:
@@ -100,6 +99,7 @@ def filter_context(design: FilterDesign, spec: ObserverSpec) -> ObserverContext:
         leads=spec.lead_raw != 0,
         state_words=len(spec.hidden),
         rad_s_per_count=float32_text(weight),
+        real=real_constants(design, spec),
     )
 
 
@@ -150,6 +150,11 @@ def _triple(
     return [(f"{name}_{axis}", raw, title) for axis, raw in zip(axes, raws, strict=True)]
 
 
+def _value(design: FilterDesign, item: RunTimeParameter) -> float:
+    key = BY_NAME[item.name].key(item.axis)
+    return next((p.value for p in design.parameters if p.name == key), 0.0)
+
+
 def _parameters(design: FilterDesign, spec: ObserverSpec) -> tuple[ParameterContext, ...]:
     found = []
     for item, raw, units in zip(RUN_TIME, words(spec), per_unit(design), strict=True):
@@ -159,6 +164,7 @@ def _parameters(design: FilterDesign, spec: ObserverSpec) -> tuple[ParameterCont
                 name=f"bias_{item.axis}" if item.axis else item.name,
                 link_name=item.link_name,
                 raw=raw,
+                value=float32_text(_value(design, item)),
                 unit=item.unit,
                 lowest=float32_text(lowest),
                 highest=float32_text(highest),

@@ -43,12 +43,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import pitch_from_up, roll_from_up, to_body
+from hostkit.filters.observer.float_geometry import (
+    clamped,
+    corrected,
+    led,
+    normalised,
+    propagated,
+    rows,
+    up,
+    upright,
+)
 from hostkit.filters.observer.limits import (
     ACCELERATION_LIMIT_M_S2,
     CLIP_GAIN,
-    FIRST_FORCE_G,
-    FIRST_ROUNDS,
-    LEAD_LIMIT_RAD,
     REST_RATE_LIMIT_RAD_S,
     START_GAIN,
     START_LIMIT_RAD,
@@ -114,7 +121,7 @@ def run_float(
     own = settings(design)
     step = _Step(own, design.period_s)
     state = None if start is None else _state_of(start[len(AXES[design.axes]) :].tolist())
-    ups, rows = [], []
+    ups, states = [], []
     force_m_s2 = force_g * STANDARD_GRAVITY_M_S2
     for rate, force in zip(rate_rad_s.tolist(), force_m_s2.tolist(), strict=True):
         if state is None:
@@ -122,12 +129,12 @@ def run_float(
             turn_rad_s = [0.0, 0.0, 0.0]
         else:
             turn_rad_s = step.take(state, rate, force)
-        ups.append(_led(_up(state.quaternion), turn_rad_s, own.lead_s))
-        rows.append(state.row())
-    up = to_body(design.mounting, np.array(ups).reshape(-1, 3))
-    angles = {"roll": roll_from_up(up), "pitch": pitch_from_up(up)}
+        ups.append(led(up(state.quaternion), turn_rad_s, own.lead_s))
+        states.append(state.row())
+    body = to_body(design.mounting, np.array(ups).reshape(-1, 3))
+    angles = {"roll": roll_from_up(body), "pitch": pitch_from_up(body)}
     chosen = np.stack([angles[axis] for axis in AXES[design.axes]], axis=-1)
-    return np.hstack([chosen, np.array(rows).reshape(len(ups), -1)])
+    return np.hstack([chosen, np.array(states).reshape(len(ups), -1)])
 
 
 class _Step:
@@ -145,7 +152,7 @@ class _Step:
         """Return the state after the first sample: its specific force is up."""
         cal = self.own.calibration
         return _State(
-            quaternion=_upright(self._force(force)),
+            quaternion=upright(self._force(force)),
             velocity=[0.0, 0.0],
             bias=[(1.0 + s) * b for s, b in zip(cal.gyro_scale, cal.gyro_bias_rad_s, strict=True)],
             rate_mean=list(rate) if self.own.rest else [0.0] * 3,
@@ -164,19 +171,19 @@ class _Step:
         if max(abs(w) for w in rate) > (self.own.clip_rate_rad_s or math.inf):
             state.start_gain = max(state.start_gain, CLIP_GAIN)
         turn = [(1.0 + scale[i]) * rate[i] - state.bias[i] for i in XYZ]
-        state.quaternion = _propagated(state.quaternion, [0.5 * self.period_s * w for w in turn])
-        x_row, y_row = _rows(state.quaternion)
+        state.quaternion = propagated(state.quaternion, [0.5 * self.period_s * w for w in turn])
+        x_row, y_row = rows(state.quaternion)
         accel = self._acceleration((x_row, y_row), self._force(force))
         turn_x, turn_y = self._correction(state, accel)
         start_x, start_y = self._start(state, accel)
         half = 0.5 * (turn_x + start_x), 0.5 * (turn_y + start_y)
-        state.quaternion = _normalised(_corrected(state.quaternion, half))
+        state.quaternion = normalised(corrected(state.quaternion, half))
         for i in XYZ:
             if at_rest and self.own.rest:
                 change = self.own.rest.gain_per_s * self.period_s * turn[i]
             else:
                 change = -self.own.kb_per_s * (x_row[i] * turn_x + y_row[i] * turn_y)
-            state.bias[i] = _clamped(state.bias[i] + change, BIAS_LIMIT_RAD_S)
+            state.bias[i] = clamped(state.bias[i] + change, BIAS_LIMIT_RAD_S)
         kept = 1.0 - self.own.kv_per_s * self.period_s
         state.velocity = [kept * v for v in state.velocity]
         return turn
@@ -199,23 +206,21 @@ class _Step:
     def _first_rest(self, state: _State) -> None:
         """Take the mean rate for the bias, and align again."""
         scale = self.own.calibration.gyro_scale
-        state.bias = [
-            _clamped((1.0 + scale[i]) * state.rate_mean[i], BIAS_LIMIT_RAD_S) for i in XYZ
-        ]
+        state.bias = [clamped((1.0 + scale[i]) * state.rate_mean[i], BIAS_LIMIT_RAD_S) for i in XYZ]
         state.start_gain = self.start_gain
         state.rested = 1.0
 
     def _acceleration(
-        self, rows: tuple[list[float], list[float]], force: list[float]
+        self, earth: tuple[list[float], list[float]], force: list[float]
     ) -> tuple[float, float]:
-        x, y = (sum(r * f for r, f in zip(row, force, strict=True)) for row in rows)
-        return _clamped(x, ACCELERATION_LIMIT_M_S2), _clamped(y, ACCELERATION_LIMIT_M_S2)
+        x, y = (sum(r * f for r, f in zip(row, force, strict=True)) for row in earth)
+        return clamped(x, ACCELERATION_LIMIT_M_S2), clamped(y, ACCELERATION_LIMIT_M_S2)
 
     def _correction(self, state: _State, accel: tuple[float, float]) -> tuple[float, float]:
         """Add to the velocity; return the turn that it asks for, rad."""
         limit, period_s = self.velocity_limit, self.period_s
         v_x, v_y = (
-            _clamped(v + a * period_s, limit) for v, a in zip(state.velocity, accel, strict=True)
+            clamped(v + a * period_s, limit) for v, a in zip(state.velocity, accel, strict=True)
         )
         state.velocity = [v_x, v_y]
         gain = self.own.kt_rad_m * period_s
@@ -229,12 +234,8 @@ class _Step:
         after = alpha - alpha * alpha
         state.start_gain = after if after > self.start_end else 0.0
         state.velocity = [(1.0 - state.start_gain) * v for v in state.velocity]
-        x, y = (_clamped(alpha * a / STANDARD_GRAVITY_M_S2, START_LIMIT_RAD) for a in accel)
+        x, y = (clamped(alpha * a / STANDARD_GRAVITY_M_S2, START_LIMIT_RAD) for a in accel)
         return y, -x
-
-
-def _clamped(value: float, limit: float) -> float:
-    return min(max(value, -limit), limit)
 
 
 def _follow(mean: list[float], reading: list[float], weight: float) -> float:
@@ -243,67 +244,6 @@ def _follow(mean: list[float], reading: list[float], weight: float) -> float:
     for i in XYZ:
         mean[i] += weight * apart[i]
     return max(abs(x) for x in apart)
-
-
-def _upright(force: list[float]) -> list[float]:
-    """Return the turn that lays a specific force upwards, nearly so where it is not 1 g."""
-    x, y, z = (_clamped(f / STANDARD_GRAVITY_M_S2, FIRST_FORCE_G) / 2.0 for f in force)
-    q = [0.5 + z, y, -x, 0.0] if z >= 0.0 else [y, 0.5 - z, 0.0, x]
-    for _ in range(FIRST_ROUNDS):
-        q = _normalised(q)
-    return q
-
-
-def _propagated(q: list[float], h: list[float]) -> list[float]:
-    """Turn by twice `h` about the sensor's axes."""
-    square = sum(x * x for x in h)
-    cosine = 1.0 - square * (1.0 / 2.0 - square / 24.0)
-    x, y, z = (part * (1.0 - square * (1.0 / 6.0 - square / 120.0)) for part in h)
-    return [
-        q[0] * cosine - q[1] * x - q[2] * y - q[3] * z,
-        q[1] * cosine + q[0] * x + q[2] * z - q[3] * y,
-        q[2] * cosine + q[0] * y + q[3] * x - q[1] * z,
-        q[3] * cosine + q[0] * z + q[1] * y - q[2] * x,
-    ]
-
-
-def _rows(q: list[float]) -> tuple[list[float], list[float]]:
-    """Return the rows of the rotation from sensor to earth that give x and y."""
-    w, x, y, z = q
-    return (
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-    )
-
-
-def _corrected(q: list[float], half: tuple[float, float]) -> list[float]:
-    """Turn by twice `half` about the earth's x and y."""
-    x, y = half
-    return [
-        q[0] - x * q[1] - y * q[2],
-        q[1] + x * q[0] + y * q[3],
-        q[2] + y * q[0] - x * q[3],
-        q[3] + x * q[2] - y * q[1],
-    ]
-
-
-def _normalised(q: list[float]) -> list[float]:
-    more = 0.5 * (1.0 - sum(part * part for part in q))
-    return [part + more * part for part in q]
-
-
-def _up(q: list[float]) -> list[float]:
-    w, x, y, z = q
-    return [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]
-
-
-def _led(up: list[float], turn_rad_s: list[float], lead_s: float) -> list[float]:
-    x, y, z = (_clamped(lead_s * w, LEAD_LIMIT_RAD) for w in turn_rad_s)
-    return [
-        up[0] + up[1] * z - up[2] * y,
-        up[1] + up[2] * x - up[0] * z,
-        up[2] + up[0] * y - up[1] * x,
-    ]
 
 
 def _state_of(words: list[float]) -> _State:

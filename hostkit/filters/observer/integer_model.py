@@ -12,20 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.filters.observer.integer_angles import angles_raw
-from hostkit.filters.observer.limits import FIRST_ROUNDS
+from hostkit.filters.observer.integer_geometry import (
+    HALF_PER_G,
+    Row,
+    clamped,
+    corrected,
+    earth_rows,
+    normalised,
+    propagated,
+    upright,
+)
 from hostkit.filters.observer.spec import ObserverSpec
 
 IntArray = NDArray[np.int64]
 Counts = list[int]
-Row = tuple[int, int, int]
 
 XYZ = range(3)
-SIXTH = round(2**32 / 6)
-FIFTH = round(2**32 / 5)
-TWENTY_FOURTH = round(2**32 / 24)
-HALF_PER_G = round(2**35 / (2.0 * 9.80665))
-"""1 / (2 g) with 35 fraction bits: from a force to the half-angle that it is off."""
-
 CLIP_GAIN = 2**26
 START_LIMIT = 2**24
 """Largest half-angle of the alignment in a sample, 26 fraction bits."""
@@ -118,7 +120,7 @@ def step_integer(
 def load(spec: ObserverSpec, accel: Counts, gyro: Counts) -> _State:
     """Return the state after the first sample: its specific force is up."""
     return _State(
-        quaternion=_upright(spec, _forces(spec, accel)),
+        quaternion=upright(spec, _forces(spec, accel)),
         correction=[0, 0],
         bias=list(spec.gains.bias_raw),
         gyro_mean=[count << 14 for count in gyro] if spec.rest else [0, 0, 0],
@@ -138,15 +140,15 @@ def step(spec: ObserverSpec, state: _State, accel: Counts, gyro: Counts) -> list
         state.start_gain = max(state.start_gain, CLIP_GAIN)
     shift = spec.formats.bias_shift
     turn = [(spec.gyro_gain[i] * gyro[i] >> 15) - (state.bias[i] >> shift) for i in XYZ]
-    propagated = _propagated(state.quaternion, turn)
-    x_row, y_row = _earth_rows(propagated)
+    moved = propagated(state.quaternion, turn)
+    x_row, y_row = earth_rows(moved)
     accel_x, accel_y = _accelerations(spec, (x_row, y_row), _forces(spec, accel))
     correction = _correct(spec, state, accel_x, accel_y)
     half_x, half_y = (part >> spec.formats.turn_shift for part in correction)
     if state.start_gain:
         start_x, start_y = _align(spec, state, accel_x, accel_y)
         half_x, half_y = half_x + start_x, half_y + start_y
-    state.quaternion = _normalised(_corrected(propagated, half_x, half_y))
+    state.quaternion = normalised(corrected(moved, half_x, half_y))
     if at_rest:
         _follow_rate(spec, state, turn)
     else:
@@ -184,51 +186,10 @@ def _first_rest(spec: ObserverSpec, state: _State) -> None:
     """Take the mean rate for the bias, and align again."""
     shift, limit = spec.formats.first_bias_shift, spec.bias_limit
     state.bias = [
-        _clamped((spec.gyro_gain[i] * state.gyro_mean[i] >> 32) << shift, limit) for i in XYZ
+        clamped((spec.gyro_gain[i] * state.gyro_mean[i] >> 32) << shift, limit) for i in XYZ
     ]
     state.start_gain = spec.start_gain
     state.rested = 1
-
-
-def _upright(spec: ObserverSpec, force: list[int]) -> list[int]:
-    """Return the turn that lays a specific force upwards, 30."""
-    limit, shift = spec.first_force_limit, spec.formats.first_force_shift
-    x, y, z = ((_clamped(f, limit) << shift) * HALF_PER_G >> 32 for f in force)
-    q = [2**29 + z, y, -x, 0] if z >= 0 else [y, 2**29 - z, 0, x]
-    for _ in range(FIRST_ROUNDS):
-        q = _normalised(q)
-    return q
-
-
-def _propagated(q: list[int], turn: list[int]) -> list[int]:
-    """Turn by twice the half-angles about the sensor's axes."""
-    x, y, z = turn
-    q0, q1, q2, q3 = q
-    square = (x * x >> 32) + (y * y >> 32) + (z * z >> 32)
-    part = square * TWENTY_FOURTH >> 32
-    cosine = square * (2**31 - 1 - part) >> 32
-    sine = square * (SIXTH - (part * FIFTH >> 32)) >> 32
-    x -= x * sine >> 32
-    y -= y * sine >> 32
-    z -= z * sine >> 32
-    return [
-        q0 - (q0 * cosine >> 32) - (q1 * x >> 32) - (q2 * y >> 32) - (q3 * z >> 32),
-        q1 - (q1 * cosine >> 32) + (q0 * x >> 32) + (q2 * z >> 32) - (q3 * y >> 32),
-        q2 - (q2 * cosine >> 32) + (q0 * y >> 32) + (q3 * x >> 32) - (q1 * z >> 32),
-        q3 - (q3 * cosine >> 32) + (q0 * z >> 32) + (q1 * y >> 32) - (q2 * x >> 32),
-    ]
-
-
-def _earth_rows(q: list[int]) -> tuple[Row, Row]:
-    """Return the rows of the rotation from sensor to earth that give x and y, 30."""
-    q0, q1, q2, q3 = q
-    q11, q22, q33 = q1 * q1 >> 32, q2 * q2 >> 32, q3 * q3 >> 32
-    q12, q13, q23 = q1 * q2 >> 32, q1 * q3 >> 32, q2 * q3 >> 32
-    q01, q02, q03 = q0 * q1 >> 32, q0 * q2 >> 32, q0 * q3 >> 32
-    return (
-        ((2**27 - q22 - q33) << 3, (q12 - q03) << 3, (q13 + q02) << 3),
-        ((q12 + q03) << 3, (2**27 - q11 - q33) << 3, (q23 - q01) << 3),
-    )
 
 
 def _accelerations(spec: ObserverSpec, rows: tuple[Row, Row], force: list[int]) -> tuple[int, int]:
@@ -236,15 +197,15 @@ def _accelerations(spec: ObserverSpec, rows: tuple[Row, Row], force: list[int]) 
     x, y, z = force
     limit, shift = spec.acceleration_limit, spec.formats.acceleration_shift
     along_x, along_y = ((a * x >> 32) + (b * y >> 32) + (c * z >> 32) for a, b, c in rows)
-    return _clamped(along_x, limit) << shift, _clamped(along_y, limit) << shift
+    return clamped(along_x, limit) << shift, clamped(along_y, limit) << shift
 
 
 def _correct(spec: ObserverSpec, state: _State, accel_x: int, accel_y: int) -> tuple[int, int]:
     """Add to the velocity, which is kept as the correction that it asks for; return that."""
     gain, limit = spec.gains.kt_raw, spec.correction_limit
     x, y = state.correction
-    x = _clamped(x + (accel_x * gain >> 32), limit)
-    y = _clamped(y + (accel_y * gain >> 32), limit)
+    x = clamped(x + (accel_x * gain >> 32), limit)
+    y = clamped(y + (accel_y * gain >> 32), limit)
     state.correction = [x, y]
     return y, -x
 
@@ -252,30 +213,12 @@ def _correct(spec: ObserverSpec, state: _State, accel_x: int, accel_y: int) -> t
 def _align(spec: ObserverSpec, state: _State, accel_x: int, accel_y: int) -> tuple[int, int]:
     """Return the half-angles that the alignment at the start asks for, 32."""
     per_force = state.start_gain * HALF_PER_G >> 32
-    x = _clamped(accel_x * per_force >> 32, START_LIMIT) << 6
-    y = _clamped(accel_y * per_force >> 32, START_LIMIT) << 6
+    x = clamped(accel_x * per_force >> 32, START_LIMIT) << 6
+    y = clamped(accel_y * per_force >> 32, START_LIMIT) << 6
     gain = state.start_gain - ((state.start_gain * state.start_gain >> 32) << 1)
     state.start_gain = gain = gain if gain > spec.start_end else 0
     state.correction = [part - ((part * gain >> 32) << 1) for part in state.correction]
     return y, -x
-
-
-def _corrected(q: list[int], half_x: int, half_y: int) -> list[int]:
-    """Turn by twice the half-angles about the earth's x and y."""
-    q0, q1, q2, q3 = q
-    return [
-        q0 - (half_x * q1 >> 32) - (half_y * q2 >> 32),
-        q1 + (half_x * q0 >> 32) + (half_y * q3 >> 32),
-        q2 + (half_y * q0 >> 32) - (half_x * q3 >> 32),
-        q3 + (half_x * q2 >> 32) - (half_y * q1 >> 32),
-    ]
-
-
-def _normalised(q: list[int]) -> list[int]:
-    q0, q1, q2, q3 = q
-    square = (q0 * q0 >> 32) + (q1 * q1 >> 32) + (q2 * q2 >> 32) + (q3 * q3 >> 32)
-    more = (2**28 - square) << 3
-    return [part + (part * more >> 32) for part in q]
 
 
 def _follow_rate(spec: ObserverSpec, state: _State, turn: list[int]) -> None:
@@ -283,22 +226,21 @@ def _follow_rate(spec: ObserverSpec, state: _State, turn: list[int]) -> None:
     gain = 0 if spec.rest is None else spec.rest.gain_raw
     shift, limit = spec.formats.rest_shift, spec.bias_limit
     for i in XYZ:
-        state.bias[i] = _clamped(state.bias[i] + ((turn[i] << shift) * gain >> 32), limit)
+        state.bias[i] = clamped(state.bias[i] + ((turn[i] << shift) * gain >> 32), limit)
 
 
 def _follow_correction(
     spec: ObserverSpec, state: _State, rows: tuple[Row, Row], correction: tuple[int, int]
 ) -> None:
-    """Let the bias follow the correction, turned into sensor axes."""
-    x, y = (part * spec.gains.kb_raw >> 32 for part in correction)
+    """Let the bias follow the correction, turned into sensor axes.
+
+    One product is taken off and one is added, so that what they lose by rounding does not add up.
+    """
+    x, y = correction[0] * spec.gains.kb_raw >> 32, -correction[1] * spec.gains.kb_raw >> 32
     x_row, y_row = rows
     for i in XYZ:
-        change = (x_row[i] * x >> 32) + (y_row[i] * y >> 32)
-        state.bias[i] = _clamped(state.bias[i] - change, spec.bias_limit)
-
-
-def _clamped(value: int, limit: int) -> int:
-    return limit if value > limit else -limit if value < -limit else value
+        change = (x_row[i] * x >> 32) - (y_row[i] * y >> 32)
+        state.bias[i] = clamped(state.bias[i] - change, spec.bias_limit)
 
 
 def _rows(spec: ObserverSpec, words: list[list[int]], turns: list[list[int]]) -> IntArray:
