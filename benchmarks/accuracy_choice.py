@@ -1,4 +1,4 @@
-"""Whether the filter that the diagnosis recommends is the better one: held against tuned filters."""
+"""Whether the filter that the diagnosis recommends is the better one of both, tuned."""
 
 from collections.abc import Iterator
 
@@ -52,9 +52,7 @@ def _rows(one: DataSet, recordings: tuple[Recording, ...]) -> Iterator[tuple[str
         for row in found.rows
         if row.held_out is not None
     }
-    advice = [
-        recommended_filter(diagnose(r, axes=one.axes, mounting=mounting)) for r in recordings
-    ]
+    advice = [recommended_filter(diagnose(r, axes=one.axes, mounting=mounting)) for r in recordings]
     named = np.array(["-" if a is None else a.filter for a in advice])
     for name in FILTERS:
         chosen = named == name
@@ -63,4 +61,3 @@ def _rows(one: DataSet, recordings: tuple[Recording, ...]) -> Iterator[tuple[str
             better = int(np.sum(each["observer"][chosen] < each["complementary"][chosen]))
             count = int(chosen.sum())
             yield (one.title, name, str(count), *means, f"{better}")
-

@@ -95,6 +95,13 @@ def parse_peers(context: click.Context, option: click.Parameter, text: str) -> t
     is_flag=True,
     help="Let peers read what the design's calibration makes of the readings.",
 )
+@click.option(
+    "--cost/--no-cost",
+    "with_cost",
+    default=True,
+    show_default=True,
+    help="Also build our C and time a sample of each filter.",
+)
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=1, show_default=True)
 @click.option("--jobs", type=click.IntRange(1), default=1, show_default=True)
 @click.option(
@@ -116,6 +123,7 @@ def compare(
     gyro_scale: bool,
     lead_ms: float | None,
     calibrated_peers: bool,
+    with_cost: bool,
     seed: int,
     jobs: int,
     report_file: Path | None,
@@ -149,7 +157,7 @@ def compare(
         raise click.UsageError(str(error)) from error
     recordings = tuple(read_recording(path) for path in recording_files)
     comparison = run_comparison(recordings, options, say)
-    found = costs(recordings[0], options)
+    found = costs(recordings[0], options) if with_cost else ()
     if as_json:
         emit_json(to_document(comparison, found))
     else:
@@ -158,4 +166,3 @@ def compare(
         from hostkit.report.comparison import write_comparison_report
 
         write_comparison_report(comparison, found, report_file)
-

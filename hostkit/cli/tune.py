@@ -28,6 +28,7 @@ PART = SENSORS["mpu6050"]
 
 DESIGN_FILE, FLEET_FOLDER = Path("design.json"), Path("designs")
 
+
 def parse_mounting(context: click.Context, option: click.Parameter, text: str) -> Mounting:
     """Read a mounting; what is wrong with it is wrong use."""
     try:

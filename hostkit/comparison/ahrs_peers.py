@@ -43,9 +43,7 @@ def run_mahony(
     rate_rad_s: Vector, force_m_s2: Vector, period_s: float, values: tuple[float, ...]
 ) -> Vector:
     """Run Mahony's filter with bias."""
-    return _run(
-        "Mahony", rate_rad_s, force_m_s2, period_s, {"k_P": values[0], "k_I": values[1]}
-    )
+    return _run("Mahony", rate_rad_s, force_m_s2, period_s, {"k_P": values[0], "k_I": values[1]})
 
 
 def run_madgwick(
@@ -90,9 +88,7 @@ AHRS_PEERS: Final = (
         name="aqua",
         title="AQUA (ahrs)",
         package="ahrs",
-        parameters=(
-            PeerParameter(name="alpha", unit="1", default=0.01, lowest=1e-4, highest=0.2),
-        ),
+        parameters=(PeerParameter(name="alpha", unit="1", default=0.01, lowest=1e-4, highest=0.2),),
         run=run_aqua,
         slowness=SLOWNESS,
         timed=TIMED,

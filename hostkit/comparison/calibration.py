@@ -70,8 +70,8 @@ def correction_of(design: FilterDesign) -> SensorCorrection:
     parts = (found.gyro_bias_rad_s, found.gyro_scale, found.accel_offset_m_s2, found.accel_scale)
     if not any(part.any() for part in parts):
         raise DesignError(
-            f"the design of the {design.filter} filter has no calibration of the sensor's axes that "
-            "peers could be given: gyro_bias, gyro_scale, accel_offset, accel_scale"
+            f"the design of the {design.filter} filter has no calibration of the sensor's axes "
+            "that peers could be given: gyro_bias, gyro_scale, accel_offset, accel_scale"
         )
     return found
 

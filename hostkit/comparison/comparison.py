@@ -174,8 +174,8 @@ def _peer_rows(
     peers: tuple[Peer, ...],
     progress: Progress,
 ) -> tuple[tuple[Row, ...], tuple[Missing, ...]]:
-    calibrated = options.calibrated_peers and options.design is not None
-    correction = correction_of(options.design) if calibrated else no_correction()
+    design = options.design if options.calibrated_peers else None
+    correction = no_correction() if design is None else correction_of(design)
     readings = tuple(readings_of(recording, correction) for recording in recordings)
     rows: list[Row] = []
     missing: list[Missing] = []

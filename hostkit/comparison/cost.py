@@ -166,12 +166,12 @@ def _generated(
         built = generated_filter(design, arithmetic, counts, folder / design.filter / arithmetic)
     except HostkitError as error:
         return (_absent(design.filter, title, timed, error),)
-    pairs = ((f"{timed}, update", built.updates()),)
-    pairs += ((f"{timed}, update and angles", built.updates_and_angles()),)
+    pairs = (
+        (f"{timed}, update", built.updates()),
+        (f"{timed}, update and angles", built.updates_and_angles()),
+    )
     return tuple(
-        _Contender(
-            name=design.filter, title=title, timed=text, samples=len(counts), action=action
-        )
+        _Contender(name=design.filter, title=title, timed=text, samples=len(counts), action=action)
         for text, action in pairs
     )
 
@@ -197,4 +197,3 @@ def _absent(name: str, title: str, timed: str, error: HostkitError) -> _Contende
     return _Contender(
         name=name, title=title, timed=timed, samples=0, action=None, reason=str(error)
     )
-

@@ -61,9 +61,7 @@ def _row(row: Row) -> dict[str, object]:
             "each_rmse_deg": [_degrees(value) for value in held_out.each_rad],
         },
         "evaluations": row.evaluations,
-        "parameters": [
-            {"name": p.name, "value": p.value, "unit": p.unit} for p in row.parameters
-        ],
+        "parameters": [{"name": p.name, "value": p.value, "unit": p.unit} for p in row.parameters],
     }
 
 

@@ -5,14 +5,15 @@ import shutil
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from hostkit.errors import BuildError, ToolMissingError
-from hostkit.records import FilterDesign
-from hostkit.render import FirmwareOptions, generate, write
+from hostkit.records import FilterDesign, GeneratedFile
+from hostkit.render import FirmwareOptions, generate
 from hostkit.render.options import Arithmetic
 from hostkit.sensors.counts import Counts
 from hostkit.targets import TARGETS
@@ -83,12 +84,20 @@ def generated_filter(
             f"no C compiler to time the generated code with; one of {', '.join(COMPILERS)}: "
             "sudo apt-get install gcc"
         )
-    write(generate(design, TARGETS["host"], FirmwareOptions(arithmetic=arithmetic)), folder)
+    _write(generate(design, TARGETS["host"], FirmwareOptions(arithmetic=arithmetic)), folder)
     return GeneratedFilter(
         library=_build(compiler, folder),
         accel_count=np.ascontiguousarray(counts.accel, dtype=np.int16),
         gyro_count=np.ascontiguousarray(counts.gyro, dtype=np.int16),
     )
+
+
+def _write(files: tuple[GeneratedFile, ...], folder: Path) -> None:
+    """Write what the filter alone is built from."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        if any(fnmatchcase(file.path, pattern) for pattern in (*FILTER_FILES, "hk_*.h")):
+            (folder / file.path).write_text(file.content, encoding="utf-8")
 
 
 def _build(compiler: str, folder: Path) -> ctypes.CDLL:

@@ -28,9 +28,7 @@ LEAD, SCALE = "lead", "gyro_scale"
 LEAD_PARAMETER = Parameter(name="lead_s", value=0.0, unit="s")
 
 
-def default_row(
-    recordings: tuple[Recording, ...], options: TuningOptions, lead_s: float
-) -> Row:
+def default_row(recordings: tuple[Recording, ...], options: TuningOptions, lead_s: float) -> Row:
     """Run a filter of hostkit as it is without any tuning, in floats.
 
     Raises
@@ -76,7 +74,12 @@ def design_row(
 
 
 def tuned_row(
-    recordings: tuple[Recording, ...], options: TuningOptions, lead_s: float, folder: Path, *, with_scale: bool
+    recordings: tuple[Recording, ...],
+    options: TuningOptions,
+    lead_s: float,
+    folder: Path,
+    *,
+    with_scale: bool,
 ) -> Row:
     """Tune a filter of hostkit, and score it where it was tuned and where it was not.
 

@@ -15,8 +15,8 @@ from hostkit.errors import ToolMissingError
 Vector = NDArray[np.float64]
 
 Run = Callable[[Vector, Vector, float, tuple[float, ...]], Vector]
-"""Angular rate (rad/s) and specific force (m/s^2) in sensor axes, each ``(N, 3)``, the period (s) and
-the parameters of the peer, to orientations, sensor to earth with z up, as ``(N, 4)`` w, x, y, z."""
+"""Angular rate (rad/s) and specific force (m/s^2) in sensor axes, each ``(N, 3)``, the period (s)
+and the parameters of the peer, to orientations, sensor to earth with z up: ``(N, 4)``, w first."""
 
 LEAST_EVALUATIONS: Final = 8
 """However slow a peer is, so many points of its parameters are tried."""

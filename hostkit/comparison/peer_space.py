@@ -88,6 +88,4 @@ class PeerSpace:
 
 def _scale(axis: str) -> Dimension:
     search = RANGE_BY_NAME[SCALE]
-    return Dimension(
-        name=SCALE, axis=axis, lower=search.lowest, upper=search.highest, is_log=False
-    )
+    return Dimension(name=SCALE, axis=axis, lower=search.lowest, upper=search.highest, is_log=False)

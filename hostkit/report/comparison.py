@@ -1,4 +1,4 @@
-"""The report of a comparison: a chart of the errors, the tables, and what is to be known of them."""
+"""The report of a comparison: a chart of the errors, and the tables."""
 
 import math
 from pathlib import Path
@@ -15,9 +15,7 @@ CUT_SHARE = 4.0
 """Bars longer than so many times the median are cut, so that the others can be told apart."""
 
 
-def write_comparison_report(
-    comparison: Comparison, costs: tuple[Cost, ...], path: Path
-) -> None:
+def write_comparison_report(comparison: Comparison, costs: tuple[Cost, ...], path: Path) -> None:
     """Write a comparison as one HTML file.
 
     Raises
@@ -42,7 +40,7 @@ def write_comparison_report(
                 svg=bars(comparison.rows),
             ),
             _errors(comparison),
-            _costs(costs),
+            *([_costs(costs)] if costs else []),
             _parameters(comparison),
             *_missing(comparison),
         ),
@@ -71,9 +69,7 @@ def bars(rows: tuple[Row, ...]) -> str:
 def _facts(comparison: Comparison) -> tuple[Fact, ...]:
     facts = []
     for origin, label in (("hostkit", "best of hostkit"), ("peer", "best peer")):
-        online = [
-            row for row in comparison.rows if row.origin == origin and not row.is_offline
-        ]
+        online = [row for row in comparison.rows if row.origin == origin and not row.is_offline]
         if online:
             best = min(online, key=lambda row: row.honest_mean_rad)
             facts.append(

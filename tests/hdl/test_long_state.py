@@ -154,7 +154,8 @@ def test_a_filter_without_a_core_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.parametrize(
-    ("rate_hz", "baud"), [(25.0, 115_200), (1000.0 / 6, 230_400), (500.0, 460_800), (1000.0, 1_000_000)]
+    ("rate_hz", "baud"),
+    [(25.0, 115_200), (1000.0 / 6, 230_400), (500.0, 460_800), (1000.0, 1_000_000)],
 )
 def test_no_sample_is_lost_while_a_state_is_sent(
     monkeypatch: pytest.MonkeyPatch, rate_hz: float, baud: int
