@@ -14,11 +14,13 @@ from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
 from hostkit.records import AXES, FilterDesign, Parameter
 from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sensor_config
-from hostkit.tuning.archive import archived
+from hostkit.tuning.archive import ArchivedTask, archived
+from hostkit.tuning.dimension import Dimension
 from hostkit.tuning.evaluation import Evaluation
 from hostkit.tuning.objective import reference_rad
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate
+from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
 from hostkit.tuning.search import choose_optimiser, search
+from hostkit.tuning.task import Space
 from hostkit.tuning.tune import tuning_task
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -95,26 +97,43 @@ def tuned_row(
     RecordingError
         If a recording has no reference, or the rates differ.
     """
-    lead_s = _lead_of(options.filter, lead_s)
+    tuner, lead_s = TUNERS[options.filter], _lead_of(options.filter, lead_s)
     if lead_s:
         fixed = FixedParameter(name=LEAD, value=lead_s)
         options = replace(options, fixed=(*options.fixed, fixed))
     if not with_scale:
-        free = tuple(name for name in TUNERS[options.filter].free if name != SCALE)
+        free = tuple(name for name in tuner.free if name != SCALE)
         options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
     problem = archived(task, LEAST_UNITS) if task.is_dear else task
+    if task.is_dear:
+        problem.cost(_start(problem.space, tuner.default())[np.newaxis])
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
     swarm = search(problem, options, optimiser)
-    each = tuple(problem.rms_rad(swarm.x, i) for i in range(len(recordings)))
-    row = _row(options.filter, "tuned", each, problem.space.design_parameters(swarm.x), lead_s)
+    x = swarm.x
+    if isinstance(problem, ArchivedTask):
+        x = retune(problem, np.ones((1, len(recordings), problem.blocks)), options)[0]
+    each = tuple(problem.rms_rad(x, i) for i in range(len(recordings)))
+    row = _row(options.filter, "tuned", each, problem.space.design_parameters(x), lead_s)
     held_out = cross_validate(problem, options) if options.held_out else None
     return replace(
         row,
         is_scaled=any(d.name == SCALE for d in problem.space.dimensions),
         held_out=held_out,
-        evaluations=swarm.evaluations,
+        evaluations=swarm.evaluations + task.is_dear,
     )
+
+
+def _start(space: Space, parameters: tuple[Parameter, ...]) -> Vector:
+    """Return the default as a point of the search, shape ``(D,)``; what it has not is zero."""
+
+    def coordinate(dimension: Dimension) -> float:
+        own = (p for p in parameters if p.name.startswith(f"{dimension.name}_"))
+        value = next((p.value for p in own), 0.0)
+        return math.log(value) if dimension.is_log else value
+
+    points = np.array([coordinate(dimension) for dimension in space.dimensions])
+    return np.clip(points, space.lower, space.upper)
 
 
 def lead_of(design: FilterDesign) -> float:

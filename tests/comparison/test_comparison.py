@@ -129,6 +129,18 @@ def test_a_design_takes_the_place_of_our_filters_and_brings_its_lead(upright, wi
     assert {r.lead_s for r in other.rows} == {0.0}
 
 
+def test_lead_reaches_our_filters_and_their_defaults_are_among_the_settings(flights, with_stubs):
+    with_stubs()
+    found = compare(flights[:2], CompareOptions(evaluations=40, lead_s=0.003, held_out=False))
+    rows = {(r.name, r.settings): r for r in found.rows}
+    default, tuned = rows["observer", "default"], rows["observer", "tuned"]
+    for row in (default, tuned):
+        assert {p.name: p.value for p in row.parameters}["lead_s"] == 0.003
+    assert tuned.mean_rad <= default.mean_rad * 1.001
+    assert tuned.evaluations == 41
+    assert rows["complementary", "default"].lead_s == 0.0
+
+
 def test_lead_turns_the_direction_of_up_with_the_rate(flights):
     one = readings_of(flights[0], no_correction())
     turning = replace(one, rate_rad_s=np.tile([2.0, 0.0, 0.0], (len(one.track), 1)))
