@@ -25,7 +25,7 @@ from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
 from hostkit.tuning.search import search
 
 PARTICLES = 20
-SCALE_BUDGET = 40
+SCALE_BUDGET = 60
 """With fewer evaluations three more numbers cannot be searched."""
 
 Progress = Callable[[str], None]

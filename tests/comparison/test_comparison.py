@@ -96,9 +96,9 @@ def test_a_peer_is_tuned_to_its_best_and_scored_where_it_was_not_tuned(upright, 
 
 def test_slow_peers_get_their_share_and_no_scale(upright, with_stubs):
     with_stubs(stub(name="fast"), stub(slowness=50, name="slow"))
-    found = compare(upright, CompareOptions(evaluations=40, held_out=False))
+    found = compare(upright, CompareOptions(evaluations=60, held_out=False))
     fast, slow = (r for r in found.rows if r.origin == "peer" and r.settings == "tuned")
-    assert (fast.is_scaled, fast.evaluations) == (True, 41)
+    assert (fast.is_scaled, fast.evaluations) == (True, 61)
     assert (slow.is_scaled, slow.evaluations) == (False, 9)
     assert fast.held_out is None
 
