@@ -133,7 +133,7 @@ def _start(space: Space, parameters: tuple[Parameter, ...]) -> Vector:
         return math.log(value) if dimension.is_log else value
 
     points = np.array([coordinate(dimension) for dimension in space.dimensions])
-    return np.clip(points, space.lower, space.upper)
+    return np.asarray(np.clip(points, space.lower, space.upper))
 
 
 def lead_of(design: FilterDesign) -> float:
