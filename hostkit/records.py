@@ -1,7 +1,7 @@
 """The frozen records that flow from stage to stage."""
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -153,10 +153,13 @@ class ToldState:
         Counter of that sample.
     words_raw
         The words, in the order of the spec.
+    behind
+        How many samples of its trace came before it.
     """
 
     sequence: int
     words_raw: tuple[int, ...]
+    behind: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,7 +210,14 @@ class AngleTrace:
         return len(self.sequence)
 
     def part(self, which: slice | NDArray[np.bool_]) -> "AngleTrace":
-        """Return some of the samples, with all that was told beside them."""
+        """Return some of the samples: a stretch with what was told in it, or a selection."""
+        if isinstance(which, slice):
+            begin, end, _ = which.indices(len(self))
+            first = 0 if begin == 0 else begin + 1
+            told = [state for state in self.told if first <= state.behind <= end]
+            before = np.maximum(np.arange(len(self) + 1) - begin, 0)
+        else:
+            told, before = list(self.told), np.concatenate(([0], np.cumsum(which)))
         return AngleTrace(
             sequence=self.sequence[which],
             time_us=self.time_us[which],
@@ -216,7 +226,7 @@ class AngleTrace:
             state_raw=self.state_raw[which],
             restarted=self.restarted[which],
             retuned=None if self.retuned is None else self.retuned[which],
-            told=self.told,
+            told=tuple(replace(state, behind=int(before[state.behind])) for state in told),
         )
 
 

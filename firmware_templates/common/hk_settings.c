@@ -15,8 +15,9 @@
 #define HK_LIST_US  UINT32_C(20000)
 
 /* A PARAM_VALUE, and its frame. */
-#define HK_VALUE_BYTES MAVLINK_MSG_ID_PARAM_VALUE_LEN
+#define HK_VALUE_BYTES 25U
 #define HK_VALUE_FRAME (HK_VALUE_BYTES + HK_FRAME_OVERHEAD)
+typedef char hk_value_has_that_length[HK_VALUE_BYTES == MAVLINK_MSG_ID_PARAM_VALUE_LEN ? 1 : -1];
 
 #define HK_ALL_PARAMETERS ((hk_parameter_bits_t)((UINT32_C(1) << HK_PARAMETERS) - 1U))
 typedef char hk_parameters_fit_mask[HK_PARAMETERS <= 16U ? 1 : -1];

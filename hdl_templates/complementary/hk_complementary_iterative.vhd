@@ -6,6 +6,7 @@ use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
 use work.hk_common_pkg.all;
+use work.hk_complementary_design_pkg.all;
 use work.hk_complementary_pkg.all;
 use work.hk_design_pkg.all;
 
@@ -121,7 +122,7 @@ architecture rtl of hk_complementary_iterative is
   signal tilt         : signed(31 downto 0);
 
   signal arctan_multiply    : std_logic;
-  signal arctan_factor      : signed(22 downto 0);
+  signal arctan_factor      : signed(30 downto 0);
   signal arctan_coefficient : signed(17 downto 0);
 
   -- A stored channel: angles, with an integral the biases, and whether it has had a sample.

@@ -4,6 +4,7 @@ use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
 use work.hk_common_pkg.all;
+use work.hk_complementary_design_pkg.all;
 use work.hk_design_pkg.all;
 
 package hk_complementary_pkg is
@@ -44,9 +45,6 @@ package hk_complementary_pkg is
   constant has_both_c      : boolean  := has_roll_c and has_pitch_c;
   constant root_integers_c : positive := 15;  -- 1 g is at most 2**14 counts
 
-  -- Whether a count stands at the end of its range.
-  function at_end_of_range (count : signed(15 downto 0)) return boolean;
-
   -- The size of a component as the tilt takes it: with the arc sine at most 1 g.
   function tilt_size (count : signed(16 downto 0)) return unsigned;
 
@@ -59,15 +57,6 @@ package hk_complementary_pkg is
 end package hk_complementary_pkg;
 
 package body hk_complementary_pkg is
-
-  function at_end_of_range (count : signed(15 downto 0)) return boolean is
-  begin
-    -- 32767, -32767 or -32768.
-    if count(15) = '0' then
-      return unsigned(count(14 downto 0)) = 32767;
-    end if;
-    return unsigned(count(14 downto 1)) = 0;
-  end function at_end_of_range;
 
   function tilt_size (count : signed(16 downto 0)) return unsigned is
   begin

@@ -183,11 +183,10 @@ def _line(step: Step) -> str:
 
 def _figures(result: DeviceResult) -> str:
     parts = [
-        None if result.eta is None else f"eta {result.eta:.6f}",
-        None if result.tau_s is None else f"tau {result.tau_s:.4g} s",
-        None if result.rmse_deg is None else f"RMSE {result.rmse_deg:.4f} deg",
+        *(fact.text() for fact in result.facts),
+        "" if result.rmse_deg is None else f"RMSE {result.rmse_deg:.4f} deg",
     ]
-    return ", ".join(part for part in parts if part is not None)
+    return ", ".join(part for part in parts if part)
 
 
 def _show(result: FleetResult, output: Path) -> None:

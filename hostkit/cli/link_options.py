@@ -130,6 +130,6 @@ _OPTIONS = (
         "design_file",
         type=click.Path(exists=True, dir_okay=False, path_type=Path),
         metavar="DESIGN",
-        help="What the device runs: shows eta, limits and the design's own values.",
+        help="What the device runs: shows limits and the design's own values.",
     ),
 )

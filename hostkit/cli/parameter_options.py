@@ -18,7 +18,7 @@ def parse_free(
 ) -> tuple[FreeName, ...]:
     """Read names of parameters, separated by commas, or ``all``; nothing leaves it open."""
     if text is None:
-        return () if ctx.params[FILTER_OPTION] == AUTO_FILTER else _tuner(ctx).free
+        return ()
     tuner = _tuner(ctx)
     if text == ALL:
         return tuple(t.name for t in tuner.tunables)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import click
 
-from hostkit.filters.complementary import eta_from_tau
+from hostkit.filters.filter import ParameterView
 from hostkit.link.device.device_link import DeviceLink, SettingOutcome
 from hostkit.link.device.parameter_entry import ParameterEntry
-from hostkit.link.device.parameter_facts import TAU_NAME, ParameterFacts
+from hostkit.link.device.parameter_facts import ParameterFacts
 from hostkit.link.device.parameter_file import number_text
 
 SCHEMA = "hostkit.params/1"
@@ -38,11 +38,25 @@ class Shown:
         measured = rate_hz is None
         return cls(facts=facts, rate_hz=link.rate_hz if measured else rate_hz, measured=measured)
 
-    def eta(self, name: str, value: float) -> float | None:
-        """Return eta for a value of FILT_TAU, None for others and where no rate is known."""
-        if name != TAU_NAME or self.rate_hz is None or value <= 0.0:
-            return None
-        return eta_from_tau(value, 1.0 / self.rate_hz)
+    def views(self, name: str) -> tuple[ParameterView, ...]:
+        """Return what says the same as a parameter; nothing where no rate is known."""
+        fact = self.facts.get(name)
+        return fact.views(1.0 / self.rate_hz) if fact is not None and self.rate_hz else ()
+
+    def viewed_by_name(self, name: str, value: float) -> dict[str, float | None]:
+        """Return what says the same as a value by its key; null where no rate is known."""
+        fact = self.facts.get(name)
+        names = () if fact is None else tuple(view.name for view in fact.views(1.0))
+        found = {view.name: view.of(value) for view in self.views(name)}
+        return {key: found.get(key) for key in names}
+
+    def viewed(self, name: str, value: float, *, about: str = "") -> str:
+        """Return the first view of a value in words; empty where there is none."""
+        for view in self.views(name)[:1]:
+            shown = view.of(value)
+            if shown is not None:
+                return f"{view.name} {about}{shown:.6g} {view.unit}".rstrip()
+        return ""
 
     def text(self, name: str, value: float) -> str:
         """Return a value with its unit."""
@@ -53,10 +67,10 @@ class Shown:
     def remarks(self, entry: ParameterEntry) -> str:
         """Return what else is to be said of a value."""
         said = []
-        eta = self.eta(entry.name, entry.value)
-        if eta is not None and self.rate_hz is not None:
-            about = "about " if self.measured else ""
-            said.append(f"eta {about}{eta:.6g} at {about}{self.rate_hz:.5g} Hz")
+        about = "about " if self.measured else ""
+        viewed = self.viewed(entry.name, entry.value, about=about)
+        if viewed:
+            said.append(f"{viewed} at {about}{self.rate_hz:.5g} Hz")
         fact = self.facts.get(entry.name)
         if fact is not None and fact.design_value not in (None, entry.value):
             said.append(f"design {self.text(entry.name, fact.design_value or 0.0)}")
@@ -74,7 +88,7 @@ class Shown:
             "lowest": None if fact is None else fact.lowest,
             "highest": None if fact is None else fact.highest,
             "design_value": None if fact is None else fact.design_value,
-            "eta": self.eta(entry.name, entry.value),
+            **self.viewed_by_name(entry.name, entry.value),
         }
 
 
@@ -93,8 +107,8 @@ def show_outcomes(outcomes: Sequence[SettingOutcome], shown: Shown) -> None:
         if outcome.error:
             click.echo(f"{outcome.name} {asked} -> not set: {outcome.error}")
         elif outcome.in_use is not None:
-            eta = shown.eta(outcome.name, outcome.in_use)
-            beside = "" if eta is None else f" (eta {eta:.6g})"
+            viewed = shown.viewed(outcome.name, outcome.in_use)
+            beside = f" ({viewed})" if viewed else ""
             in_use = shown.text(outcome.name, outcome.in_use)
             click.echo(f"{outcome.name} {asked} -> in use {in_use}{beside}")
 

@@ -19,6 +19,7 @@ REFRESH_PER_S = 4
 NOTICES = 5
 TEXTS = 2
 FORWARDS = 2
+FACTS = 3
 RETUNED = 3
 REASONS = 3
 COLOUR = {"pass": "bold green", "fail": "bold red", "refused": "bold red"}
@@ -142,8 +143,13 @@ def _head(info: SessionInfo) -> Text:
     head = Text("hostkit ", "bold")
     head.append(printable(info.port), "")
     head.append(
-        f"  design {info.design_digest}  {info.rate_hz:g} Hz  eta {info.eta:.6g}  "
-        f"tau {info.tau_s:.4g} s",
+        "  ".join(
+            (
+                f"  design {info.design_digest}",
+                f"{info.rate_hz:g} Hz",
+                *(fact.text() for fact in info.facts[:FACTS]),
+            )
+        ),
         "not bold",
     )
     return head

@@ -12,11 +12,12 @@ from hostkit.cli.output import emit_json
 from hostkit.cli.parameter_options import AUTO_FILTER, FILTER, FIX, FREE, RANGE
 from hostkit.cli.tune_filter import with_filter
 from hostkit.cli.tune_output import show, tuning_document
-from hostkit.design_file import save_design, with_acceptance_of
+from hostkit.design_file import load_design, save_design, with_acceptance_of
 from hostkit.errors import DesignError
 from hostkit.fleet import FleetOptions, GroupBy, SensorWish
 from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS
+from hostkit.provenance import CalibrationRecord
 from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
 from hostkit.sensors import SENSORS
 from hostkit.tuning import AUTO, FixedParameter, FreeName, SearchRange, TuningOptions, sensor_config
@@ -125,6 +126,13 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     help="Tunings on resampled recordings, for the intervals; 0 for none.",
 )
 @click.option(
+    "--calibration",
+    "calibration_file",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="DESIGN",
+    help="Take over the calibration of a design (see hostkit calibrate imu); it is not tuned.",
+)
+@click.option(
     "--gyro-range",
     type=click.Choice([str(r.full_scale) for r in PART.gyro_ranges]),
     help="Full scale in deg/s; by default from the recordings.",
@@ -172,6 +180,7 @@ def tune(
     precision: Precision,
     held_out: bool,
     resamples: int,
+    calibration_file: Path | None,
     gyro_range: str | None,
     accel_range: str | None,
     low_pass: str | None,
@@ -203,6 +212,7 @@ def tune(
         precision=precision,
         held_out=held_out,
         resamples=resamples,
+        calibration=None if calibration_file is None else _calibration(calibration_file),
     )
     wish = SensorWish(
         gyro_full_scale_deg_s=None if gyro_range is None else int(gyro_range),
@@ -225,6 +235,13 @@ def tune(
             report_file=report_file,
             as_json=as_json,
         )
+
+
+def _calibration(path: Path) -> CalibrationRecord:
+    found = load_design(path).calibration
+    if found is None:
+        raise DesignError(f"{path} has no calibration; hostkit calibrate imu puts one into it")
+    return found
 
 
 def _tune_one(

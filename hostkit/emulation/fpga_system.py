@@ -27,7 +27,7 @@ IntArray = NDArray[np.int64]
 
 SHORTEST_US = 1250
 """Reading and checking the sensor takes 1.2 ms at most with the slow clock of the bench."""
-SHORTEST_WITH_STATE_US = 1500
+SHORTEST_WITH_STATE_US = 1600
 """Two samples must take longer than one frame of a sample, one of a state, and a reading."""
 US_PER_S = 1e6
 

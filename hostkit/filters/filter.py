@@ -73,6 +73,35 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterView:
+    """Another quantity that says the same as a parameter, as eta does of a time constant.
+
+    Attributes
+    ----------
+    name, symbol, unit
+        Its key in documents, and what stands beside and behind it on the screen; may be empty.
+    terms
+        ``(a, b, c, d)`` of ``(a value + b) / (c value + d)``: a form that can be turned around.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    terms: tuple[float, float, float, float]
+
+    def of(self, value: float) -> float | None:
+        """Return the quantity for a value of the parameter; None where there is none."""
+        a, b, c, d = self.terms
+        below = c * value + d
+        return None if below == 0.0 else (a * value + b) / below
+
+
+def no_views(period_s: float) -> tuple[ParameterView, ...]:
+    """Return no views."""
+    return ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class KnownParameter:
     """A parameter that devices of a filter may have.
 
@@ -82,12 +111,23 @@ class KnownParameter:
         Its name on the link, and the unit of its value.
     lowest, highest
         What a device takes; None where that needs the sample rate of a design.
+    symbol, title
+        What stands beside its value on the screen, and what it is; may be empty.
+    views
+        Other quantities that say the same, for a sample period (s); the first one may be typed
+        instead of the parameter.
+    relative_step
+        Size of a step of the values that a device keeps, relative to them.
     """
 
     name: str
     unit: str
     lowest: float | None = None
     highest: float | None = None
+    symbol: str = ""
+    title: str = ""
+    views: Callable[[float], tuple[ParameterView, ...]] = no_views
+    relative_step: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

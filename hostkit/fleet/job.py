@@ -65,7 +65,7 @@ def _remarks(result: TuningResult, recordings: tuple[Recording, ...]) -> tuple[s
     found = sum(len(check(recording).findings) for recording in recordings)
     remarks = [f"{found} finding(s) on the sanity cards"] if found else []
     if result.swarm.at_bound.any():
-        remarks.append("tau lies on the edge of its range")
+        remarks.append("a parameter lies on the edge of its range")
     return tuple(remarks)
 
 

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Literal
 
 from hostkit.design_file import digest
-from hostkit.filters.complementary import tau_from_eta
+from hostkit.filters import FILTERS
+from hostkit.filters.filter import Fact
 from hostkit.records import FilterDesign
 from hostkit.tuning import TuningOptions
 
@@ -91,8 +92,10 @@ class DeviceResult:
     ----------
     recordings
         How many files it has.
-    digest, eta, tau_s, rmse_deg
-        Of its design, the last one on its own recordings; None where there is none.
+    digest, rmse_deg
+        Of its design, the second on its own recordings; None where there is none.
+    facts
+        What its filter tells of the design.
     error
         One line, empty unless it failed.
     """
@@ -101,9 +104,8 @@ class DeviceResult:
     status: Status
     recordings: int
     digest: str | None = None
-    eta: float | None = None
-    tau_s: float | None = None
     rmse_deg: float | None = None
+    facts: tuple[Fact, ...] = ()
     error: str = ""
 
 
@@ -124,6 +126,11 @@ class FleetResult:
 
     devices: tuple[DeviceResult, ...]
 
+    @property
+    def fact_names(self) -> tuple[str, ...]:
+        """Names of the facts that some device has, in their order."""
+        return tuple(dict.fromkeys(fact.name for d in self.devices for fact in d.facts))
+
     def of(self, status: Status) -> tuple[DeviceResult, ...]:
         """Return the devices of one status."""
         return tuple(d for d in self.devices if d.status == status)
@@ -136,15 +143,13 @@ def failed(device: str, recordings: int, error: str) -> DeviceResult:
 
 def designed(device: str, status: Status, recordings: int, design: FilterDesign) -> DeviceResult:
     """Return the result of a device that has a design."""
-    eta = next((p.value for p in design.parameters if p.name == "eta"), None)
     return DeviceResult(
         device=device,
         status=status,
         recordings=recordings,
         digest=digest(design),
-        eta=eta,
-        tau_s=None if eta is None else tau_from_eta(eta, design.period_s),
         rmse_deg=None if design.tuning is None else design.tuning.rmse_deg,
+        facts=FILTERS[design.filter].facts(design),
     )
 
 

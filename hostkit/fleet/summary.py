@@ -1,9 +1,8 @@
 """The summary of a fleet: the document ``hostkit.fleet/1``."""
 
 import json
-from dataclasses import asdict
 
-from hostkit.fleet.records import STATUSES, FleetResult
+from hostkit.fleet.records import STATUSES, DeviceResult, FleetResult
 
 SCHEMA = "hostkit.fleet/1"
 SUMMARY = "fleet.json"
@@ -14,7 +13,20 @@ def fleet_document(result: FleetResult) -> dict[str, object]:
     return {
         "schema": SCHEMA,
         **{status: len(result.of(status)) for status in STATUSES},
-        "devices": [{**asdict(device), "error": device.error or None} for device in result.devices],
+        "devices": [_device(device, result.fact_names) for device in result.devices],
+    }
+
+
+def _device(device: DeviceResult, fact_names: tuple[str, ...]) -> dict[str, object]:
+    facts = {fact.name: fact.value for fact in device.facts}
+    return {
+        "device": device.device,
+        "status": device.status,
+        "recordings": device.recordings,
+        "digest": device.digest,
+        **{name: facts.get(name) for name in fact_names},
+        "rmse_deg": device.rmse_deg,
+        "error": device.error or None,
     }
 
 

@@ -20,6 +20,8 @@ HEARTBEAT_EVERY_S = 1.0
 VERSION_EVERY_S = 2.0
 LIST_EVERY_S = 2.0
 VERSION_TRIES = 5
+STATE_EVERY_S = 0.3
+"""A state that is asked for comes with one of the next samples."""
 
 STATION_TYPE, NO_AUTOPILOT, MAVLINK_VERSION = 6, 8, 3
 REQUEST_MESSAGE, AUTOPILOT_VERSION = 512, 148
@@ -47,6 +49,7 @@ class Conversation:
     ) -> None:
         self._transport, self._encoder, self._clock = transport, encoder, clock
         self._notices, self._silent = notices, silent
+        self._period_s = design.period_s
         self._facts: Mapping[str, ParameterFacts] = parameter_facts(design)
         self._parameters = ParameterClient(self.send, clock, facts=self._facts)
         self._commands = CommandClient(self.send, clock)
@@ -54,7 +57,7 @@ class Conversation:
         self._next_heartbeat_s = self._next_version_s = clock.monotonic()
         self._version_tries = 0
         self._command_told: CommandState | None = None
-        self._next_list_s = 0.0
+        self._next_list_s = self._next_state_s = 0.0
 
     def send(self, message: Any) -> None:
         """Send a message of the dialect, unless nothing is to be sent."""
@@ -99,6 +102,14 @@ class Conversation:
             self._follow_command()
         elif frame.name == "AUTOPILOT_VERSION" and frame.source == self._target:
             self._version_tries = VERSION_TRIES
+
+    def learn_state(self, needed: bool) -> None:
+        """Ask for the state of the filter while it is needed."""
+        now_s = self._clock.monotonic()
+        if self._silent or not needed or self._target is None or now_s < self._next_state_s:
+            return
+        self._next_state_s = now_s + STATE_EVERY_S
+        self._request(python_module().MAVLINK_MSG_ID_TILT_STATE)
 
     def poll(self) -> None:
         """Send what is due."""
@@ -158,6 +169,9 @@ class Conversation:
             highest=None if facts is None else facts.highest,
             wanted=entry.wanted,
             error=entry.error,
+            symbol="" if facts is None else facts.symbol,
+            title="" if facts is None else facts.title,
+            views=() if facts is None else facts.views(self._period_s),
         )
 
     def _follow_command(self) -> None:
@@ -180,7 +194,11 @@ class Conversation:
             return
         self._version_tries += 1
         self._next_version_s = now_s + VERSION_EVERY_S
-        values = (AUTOPILOT_VERSION, 0, 0, 0, 0, 0, 0)
+        self._request(AUTOPILOT_VERSION)
+
+    def _request(self, message_id: int) -> None:
+        assert self._target is not None
+        values = (message_id, 0, 0, 0, 0, 0, 0)
         dialect = python_module()
         self.send(dialect.MAVLink_command_long_message(*self._target, REQUEST_MESSAGE, 0, *values))
 

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 from hostkit.link.statistics import Spread, TimingStatistics
 from hostkit.monitor.result import SessionResult
+from hostkit.monitor.snapshot import SessionInfo
 from hostkit.records import ResidualStatistics, RetunedParameter
 from hostkit.units import DEG_PER_RAD
 from hostkit.validation import Check, checks
@@ -22,6 +23,8 @@ def monitor_document(result: SessionResult) -> Document:
         "late": report.late,
         "repeated": report.repeated,
         "unjudged": report.unjudged,
+        "waiting": report.waiting,
+        "longest_wait_s": report.longest_wait_s,
         "stride": report.stride,
         "lost_frames": link.lost_frames,
         "bad": link.bad,
@@ -41,11 +44,18 @@ def monitor_document(result: SessionResult) -> Document:
         "checks": [_check(check) for check in checks(report, result.thresholds)],
         "link": _link(result),
         "timing": _timing(result.timing),
-        "session": None if result.info is None else asdict(result.info),
+        "session": None if result.info is None else _session(result.info),
         "texts": list(result.device.texts),
         "verdict": report.verdict,
         "reasons": list(report.reasons),
     }
+
+
+def _session(info: SessionInfo) -> Document:
+    """Return what was judged; the facts of its filter stand among the rest."""
+    document: Document = asdict(info)
+    del document["facts"]
+    return {**document, **{fact.name: fact.value for fact in info.facts}}
 
 
 def _deg(angle_rad: float | None) -> float | None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hostkit import __version__
 from hostkit.design_file import digest
-from hostkit.filters.complementary import crossover_hz, tau_from_eta
+from hostkit.filters import FILTERS
 from hostkit.link.clock import Clock
 from hostkit.link.frames.signing import SigningKey
 from hostkit.link.frames.timesync import TimeSync
@@ -134,14 +134,13 @@ def session_info(
     design: FilterDesign, transport: Transport, port: str, thresholds: Thresholds
 ) -> SessionInfo:
     """Return what does not change while a session runs."""
-    eta = design.parameter("eta")
+    filter_ = FILTERS[design.filter]
     return SessionInfo(
         design_digest=digest(design),
         axes=AXES[design.axes],
         rate_hz=design.rate_hz,
-        eta=eta,
-        tau_s=tau_from_eta(eta, design.period_s),
-        crossover_hz=crossover_hz(eta, design.period_s),
+        filter=filter_.title,
+        facts=filter_.facts(design),
         port=port,
         replay=not transport.live,
         hostkit_version=__version__,

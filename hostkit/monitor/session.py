@@ -246,6 +246,7 @@ class Session:
         for raw in self._parts.outlets.receive():
             conversation.pass_on(raw)
         conversation.learn(self._parts.validator.untold)
+        conversation.learn_state(self._parts.validator.needs_state)
         conversation.poll()
         if self.transport.live and self._parts.judge.source is not None:
             request = self._parts.timesync.poll()

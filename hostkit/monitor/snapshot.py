@@ -9,6 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from hostkit.filters.filter import Fact, ParameterView
 from hostkit.link.ports.transport import PortState
 from hostkit.link.statistics import LinkStatistics, TimingStatistics
 from hostkit.records import Axis, ValidationReport, read_only
@@ -63,15 +64,21 @@ class Batch:
 class SessionInfo:
     """What does not change while a session runs.
 
-    `max_rms_deg` and `max_abs_deg` are what the residual is allowed; None is no limit.
+    Attributes
+    ----------
+    filter
+        The filter of the design, as a person calls it.
+    facts
+        What people want to read of the design.
+    max_rms_deg, max_abs_deg
+        What the residual is allowed; None is no limit.
     """
 
     design_digest: str
     axes: tuple[Axis, ...]
     rate_hz: float
-    eta: float
-    tau_s: float
-    crossover_hz: float
+    filter: str
+    facts: tuple[Fact, ...]
     port: str
     replay: bool
     hostkit_version: str
@@ -111,6 +118,8 @@ class ParameterState:
         What was asked for and is not answered yet.
     error
         Why the last setting did not take; empty if it did.
+    symbol, title, views
+        As in :class:`hostkit.filters.filter.KnownParameter`, for the rate of the design.
     """
 
     name: str
@@ -121,6 +130,9 @@ class ParameterState:
     highest: float | None = None
     wanted: float | None = None
     error: str = ""
+    symbol: str = ""
+    title: str = ""
+    views: tuple[ParameterView, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

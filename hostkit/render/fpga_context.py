@@ -20,8 +20,8 @@ LOWEST_CLOCK_HZ = 10_000_000
 CLOCKS_PER_BIT = 8
 """The receiver of the serial line takes eight samples a bit."""
 LOWEST_DEFAULT_BAUD = 115_200
-SENSOR_READ_S = 0.5e-3
-"""From the sample of the sensor to its counts, at 400 kHz."""
+SENSOR_READ_S = 0.75e-3
+"""From the sample of the sensor to its counts, checked, at 400 kHz."""
 STATE_FRAME_CLOCKS = 2200
 """What a frame of a sample and one of a state take in `hk_mavlink_tx` beside their bits."""
 WAITING_SAMPLES = 2

@@ -243,7 +243,7 @@ def _provenance(result: SessionResult) -> tuple[tuple[str, str], ...]:
         found += [
             ("design", info.design_digest),
             ("axes, rate", f"{', '.join(info.axes)}, {info.rate_hz:g} Hz"),
-            ("eta, tau", f"{info.eta:.8g}, {info.tau_s:.6g} s ({info.crossover_hz:.4g} Hz)"),
+            ("filter", ", ".join((info.filter, *(fact.text() for fact in info.facts)))),
             ("port", plain_text(info.port)),
             ("hostkit", info.hostkit_version),
         ]

@@ -34,8 +34,8 @@ PLACE_STEP_M = 1e-4
 """How exactly a step of position is the velocity's: loose enough for a sound matrix."""
 HEADING_RAD = 1e-3
 """Holds the first heading, which nothing measures and nothing needs."""
-CLIPPED_RAD_S = 1.0
-"""Size of what a clipped rate lacks."""
+DOUBTED_RAD_S = 1.0
+"""Size of what a rate that is not believed lacks."""
 FREE = 1e-9
 """Weight of unknowns without an equation of their own."""
 TAIL = 2.0
@@ -53,14 +53,33 @@ class Estimate:
     constants: Array
 
 
-def improve(blocks: Blocks, settings: SmootherSettings, old: Estimate) -> Estimate:
-    """Return the estimate after one step of Gauss and Newton.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class System:
+    """The normal equations about an estimate, M = 12 (K + 1) unknowns of nodes and 9 of all.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the equations contradict each other beyond what numbers hold.
+    Attributes
+    ----------
+    banded, pull
+        Matrix of the nodes as lower bands, shape ``(24, M)``, and its right side, ``(M,)``.
+    border
+        Products with the common unknowns, shape ``(M, 9)``.
+    common, common_pull
+        Matrix of the common unknowns, ``(9, 9)``, and its right side, ``(9,)``.
+    residual, weight
+        Of what ties two nodes, shape ``(K, 12)`` each.
     """
+
+    banded: Array
+    pull: Array
+    border: Array
+    common: Array
+    common_pull: Array
+    residual: Array
+    weight: Array
+
+
+def assemble(blocks: Blocks, settings: SmootherSettings, old: Estimate) -> System:
+    """Return the normal equations about an estimate."""
     residual, slope, weight = _block_equations(blocks, settings, old)
     weighted = back(slope * weight[:, :, None])
     matrix, pull = weighted @ slope, turn(weighted, residual)
@@ -69,14 +88,34 @@ def improve(blocks: Blocks, settings: SmootherSettings, old: Estimate) -> Estima
     banded[0] += node_weight
     sides = _both_ends(np.concatenate((pull[:, :PAIR, None], matrix[:, :PAIR, PAIR:]), axis=2))
     sides[..., 0] += node_pull
-    prior = _constants_weight(settings)
-    common = matrix[:, PAIR:, PAIR:].sum(axis=0) + np.diag(prior)
-    common_pull = pull[:, PAIR:].sum(axis=0) + prior * old.constants
-    # The common unknowns border the band: eliminate the nodes, solve for them, go back.
     flat = sides.reshape(-1, 1 + COMMON)
-    solved = solveh_banded(banded.reshape(PAIR, -1), flat, lower=True, check_finite=False)
-    border = flat[:, 1:].T @ solved
-    constants = -np.linalg.solve(common - border[:, 1:], common_pull - border[:, 0])
+    prior = constants_weight(settings)
+    return System(
+        banded=banded.reshape(PAIR, -1),
+        pull=flat[:, 0],
+        border=flat[:, 1:],
+        common=matrix[:, PAIR:, PAIR:].sum(axis=0) + np.diag(prior),
+        common_pull=pull[:, PAIR:].sum(axis=0) + prior * old.constants,
+        residual=residual,
+        weight=weight,
+    )
+
+
+def improve(blocks: Blocks, settings: SmootherSettings, old: Estimate) -> Estimate:
+    """Return the estimate after one step of Gauss and Newton.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the equations contradict each other beyond what numbers hold.
+    """
+    system = assemble(blocks, settings, old)
+    border = system.border
+    # The common unknowns border the band: eliminate the nodes, solve for them, go back.
+    sides = np.hstack((system.pull[:, None], border))
+    solved = solveh_banded(system.banded, sides, lower=True, check_finite=False)
+    inner = border.T @ solved
+    constants = -np.linalg.solve(system.common - inner[:, 1:], system.common_pull - inner[:, 0])
     nodes = -(solved[:, 0] + solved[:, 1:] @ constants).reshape(-1, NODE)
     return Estimate(
         orientation=rotation_from_vector(nodes[:, ROTATION]) @ old.orientation,
@@ -128,7 +167,7 @@ def _block_equations(
 
 def _block_weight(blocks: Blocks, settings: SmootherSettings) -> Array:
     time = blocks.duration_s
-    unknown_rad = CLIPPED_RAD_S * blocks.clipped_s
+    unknown_rad = DOUBTED_RAD_S * blocks.doubted_s
     variances = (
         settings.gyro_noise_density_rad_s_rthz**2 * time + unknown_rad**2,
         settings.accel_noise_density_m_s2_rthz**2 * time,
@@ -142,8 +181,7 @@ def _node_equations(
     blocks: Blocks, settings: SmootherSettings, old: Estimate
 ) -> tuple[Array, Array]:
     """Weights and weighted residuals, (K + 1, 12) each, of what one node is by itself."""
-    half = 0.5 * blocks.duration_s[:, None]
-    time = np.vstack((half, np.zeros((1, 1)))) + np.vstack((np.zeros((1, 1)), half))
+    time = node_time_s(blocks)[:, None]
     weight, pull = np.full((len(time), NODE), FREE), np.zeros((len(time), NODE))
     for part, value, size in (
         (VELOCITY, old.velocity_m_s, settings.speed_m_s),
@@ -158,7 +196,14 @@ def _node_equations(
     return weight, pull
 
 
-def _constants_weight(settings: SmootherSettings) -> Array:
+def node_time_s(blocks: Blocks) -> Array:
+    """Return the time that each node stands for, shape ``(K + 1,)``."""
+    half = 0.5 * blocks.duration_s
+    return np.asarray(np.append(half, 0.0) + np.insert(half, 0, 0.0))
+
+
+def constants_weight(settings: SmootherSettings) -> Array:
+    """Return the weights that hold the common unknowns near zero, shape ``(9,)``."""
     sizes = (settings.accel_offset_m_s2, settings.accel_scale, settings.gyro_scale)
     return np.repeat(np.asarray(sizes) ** -2.0, 3)
 

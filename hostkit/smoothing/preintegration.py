@@ -30,8 +30,8 @@ class Blocks:
         Shape ``(K,)``; the last block may be shorter.
     within
         Rotation from each sample to the first one, shape ``(K, M + 1, 3, 3)``.
-    clipped_s
-        Time with a clipped rate, shape ``(K,)``.
+    doubted_s
+        Time with a rate that is not believed, shape ``(K,)``.
     velocity_m_s
         Specific force integrated, shape ``(K, 3)``.
     by_bias_s, by_rate_rad, by_force_m_s
@@ -43,7 +43,7 @@ class Blocks:
 
     duration_s: Array
     within: Array
-    clipped_s: Array
+    doubted_s: Array
     velocity_m_s: Array
     by_bias_s: Array
     by_rate_rad: Array
@@ -61,7 +61,7 @@ def preintegrate(
     specific_force_m_s2: Array,
     period_s: float,
     samples: int,
-    full_scale_rad_s: float = np.inf,
+    doubted: NDArray[np.bool_] | None = None,
 ) -> Blocks:
     """Gather samples in blocks of `samples`.
 
@@ -76,8 +76,8 @@ def preintegrate(
         Sample period.
     samples
         Samples of a block.
-    full_scale_rad_s
-        Rates from here on are clipped.
+    doubted
+        Samples whose rate is not believed, shape ``(N,)``: clipped ones, and those put into a gap.
     """
     count = len(angular_rate_rad_s)
     rate = _blocked(angular_rate_rad_s[1:], samples)
@@ -92,12 +92,12 @@ def preintegrate(
     def integral(columns: Array) -> Array:
         return np.asarray(np.einsum("kmij,kmj->kij", within[:, 1:], columns) * period_s)
 
-    clipped = np.any(np.abs(rate) >= full_scale_rad_s, axis=2)
+    unknown = np.zeros(count) if doubted is None else doubted.astype(np.float64)
     by_force = integral(force)
     return Blocks(
         duration_s=present.sum(axis=(1, 2)) * period_s,
         within=within,
-        clipped_s=clipped.sum(axis=1) * period_s,
+        doubted_s=_blocked(unknown[1:, None], samples).sum(axis=(1, 2)) * period_s,
         velocity_m_s=by_force.sum(axis=2),
         by_bias_s=integral(np.broadcast_to(present, rate.shape)),
         by_rate_rad=integral(rate),

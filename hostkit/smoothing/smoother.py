@@ -25,9 +25,11 @@ frame of the integrated rates, low-passed there and back.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 from hostkit.errors import RecordingError
+from hostkit.smoothing.automatic import chosen, held, is_planar
 from hostkit.smoothing.equations import (
     ACCEL_OFFSET,
     ACCEL_SCALE,
@@ -61,6 +63,10 @@ class Smoothed:
         True rate is (1 + scale) times the reading less its bias, shape ``(3,)``.
     accel_offset_m_s2, accel_scale
         True force is (1 + scale) times the reading less its offset, shape ``(3,)`` each.
+    settings
+        The settings in use: those asked for or chosen, less what the motion does not show.
+    compared
+        How many settings were compared; 0 where they were told.
     """
 
     up: Array
@@ -69,6 +75,8 @@ class Smoothed:
     gyro_scale: Array
     accel_offset_m_s2: Array
     accel_scale: Array
+    settings: SmootherSettings
+    compared: int = 0
 
 
 def smooth(
@@ -76,6 +84,9 @@ def smooth(
     specific_force_m_s2: Array,
     period_s: float,
     settings: SmootherSettings,
+    *,
+    automatic: bool = False,
+    doubted: NDArray[np.bool_] | None = None,
 ) -> Smoothed:
     """Return the tilt at each sample, given all samples.
 
@@ -87,6 +98,11 @@ def smooth(
         Sample period.
     settings
         Deviations of sensor and motion.
+    automatic
+        Whether to begin with `settings` and take others where the recording itself asks for them,
+        see `hostkit.smoothing.automatic`.
+    doubted
+        Samples whose rate is not believed, shape ``(N,)``, beside those at the full scale.
 
     Raises
     ------
@@ -94,22 +110,83 @@ def smooth(
         If the arrays do not fit together, hold something that is not a finite number, are
         shorter than twenty blocks, or cannot be solved.
     """
-    _require_fit(angular_rate_rad_s, specific_force_m_s2, period_s, settings)
-    samples = max(1, round(settings.block_s / period_s))
-    full_scale_rad_s = settings.gyro_full_scale_rad_s
-    blocks = preintegrate(
-        angular_rate_rad_s, specific_force_m_s2, period_s, samples, full_scale_rad_s
+    rate, force = angular_rate_rad_s, specific_force_m_s2
+    return solve(prepare(rate, force, period_s, settings, doubted), settings, automatic=automatic)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prepared:
+    """What is the same for all settings: readings as blocks, and where the solution starts."""
+
+    angular_rate_rad_s: Array
+    period_s: float
+    blocks: Blocks
+    start: Estimate
+    planar: bool
+
+
+def prepare(
+    angular_rate_rad_s: Array,
+    specific_force_m_s2: Array,
+    period_s: float,
+    settings: SmootherSettings,
+    doubted: NDArray[np.bool_] | None = None,
+) -> Prepared:
+    """Return what solving takes; of the settings, full scale and block count here.
+
+    Raises
+    ------
+    RecordingError
+        If the arrays cannot be smoothed, see `smooth`.
+    """
+    rate, force = angular_rate_rad_s, specific_force_m_s2
+    _require_fit(rate, force, period_s, settings)
+    clipped = np.any(np.abs(rate) >= settings.gyro_full_scale_rad_s, axis=1)
+    unknown = clipped if doubted is None else clipped | doubted
+    blocks = preintegrate(rate, force, period_s, block_samples(settings, period_s), unknown)
+    return Prepared(
+        angular_rate_rad_s=rate,
+        period_s=period_s,
+        blocks=blocks,
+        start=_start(blocks),
+        planar=is_planar(rate),
     )
-    estimate = _solve(blocks, settings)
-    up = up_of_samples(blocks, estimate.orientation, period_s)
+
+
+def solve(prepared: Prepared, settings: SmootherSettings, *, automatic: bool = False) -> Smoothed:
+    """Return the tilt of what was prepared.
+
+    Raises
+    ------
+    RecordingError
+        If it cannot be solved.
+    """
+    blocks, compared = prepared.blocks, 0
+    settings = held(settings, prepared.planar)
+    if automatic:
+        settings, compared = chosen(blocks, prepared.start, settings, prepared.planar)
+    estimate = _solve(blocks, settings, prepared.start)
+    up = up_of_samples(blocks, estimate.orientation, prepared.period_s)
     return Smoothed(
-        up=_led(up, angular_rate_rad_s, settings.lead_s),
+        up=_led(up, prepared.angular_rate_rad_s, settings.lead_s),
         node_time_s=np.concatenate(((0.0,), np.cumsum(blocks.duration_s))),
         gyro_bias_rad_s=estimate.bias_rad_s,
         gyro_scale=estimate.constants[GYRO_SCALE],
         accel_offset_m_s2=estimate.constants[ACCEL_OFFSET],
         accel_scale=estimate.constants[ACCEL_SCALE],
+        settings=settings,
+        compared=compared,
     )
+
+
+def block_samples(settings: SmootherSettings, period_s: float) -> int:
+    """Return how many samples a block has."""
+    return max(1, round(settings.block_s / period_s))
+
+
+def fewest_samples(settings: SmootherSettings, period_s: float) -> int:
+    """Return how many samples it takes at least."""
+    return FEWEST_BLOCKS * block_samples(settings, period_s) + 1
 
 
 def _require_fit(rate: Array, force: Array, period_s: float, settings: SmootherSettings) -> None:
@@ -119,15 +196,14 @@ def _require_fit(rate: Array, force: Array, period_s: float, settings: SmootherS
         )
     if not 0.0 < period_s < np.inf:
         raise RecordingError(f"a sample period of {period_s:g} s cannot be smoothed")
-    needed = FEWEST_BLOCKS * max(1, round(settings.block_s / period_s)) + 1
+    needed = fewest_samples(settings, period_s)
     if len(rate) < needed:
         raise RecordingError(f"{len(rate)} samples are too few to smooth: it takes {needed}")
     if not (np.isfinite(rate).all() and np.isfinite(force).all()):
         raise RecordingError("a rate or force to smooth is not a finite number; cut the gap out")
 
 
-def _solve(blocks: Blocks, settings: SmootherSettings) -> Estimate:
-    estimate = _start(blocks)
+def _solve(blocks: Blocks, settings: SmootherSettings, estimate: Estimate) -> Estimate:
     try:
         for _ in range(STEPS):
             estimate = improve(blocks, settings, estimate)

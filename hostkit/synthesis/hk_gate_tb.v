@@ -1,8 +1,11 @@
 // Plays a vector file on a converted or mapped core and writes what comes out.
 //
 // A vector is a line of hex words: channel, accel x y z, gyro x y z. A result is a line: channel,
-// roll, pitch, the biases of both, the flags restarted and saturated, and the latency in clocks.
+// roll, pitch, the hidden words, the flags restarted and saturated, and the latency in clocks.
 // The first line of the results is the design digest.
+//
+// CORE is the module. HIDDEN_PORTS connects its ports of hidden words to parts of `hidden`; with
+// STATE_WORDS the words come one by one through state_index and state_word instead.
 `timescale 1ns / 1ps
 
 module hk_gate_tb;
@@ -10,6 +13,12 @@ module hk_gate_tb;
   parameter CHANNEL_BITS = 1;
   parameter STALLS       = 0;      // gaps on both sides, unknown inputs in the gaps
   parameter READY_CLOCKS = 10000;  // the longest wait for anything
+
+`ifdef STATE_WORDS
+  localparam HAS_NO_STATE = 0;
+`else
+  localparam HAS_NO_STATE = 1;
+`endif
 
   reg clk = 0;
   reg rst = 1;
@@ -19,24 +28,42 @@ module hk_gate_tb;
   reg out_ready = 0;
   wire in_ready, out_valid, restarted, saturated;
   wire [CHANNEL_BITS-1:0] out_channel;
-  wire [31:0] angle_roll, angle_pitch, bias_roll, bias_pitch;
+  wire [31:0] angle_roll, angle_pitch;
+`ifdef STATE_WORDS
+  localparam HIDDEN_WORDS = `STATE_WORDS;
+  reg [32*HIDDEN_WORDS-1:0] hidden;
+  reg [4:0] state_index = 0;
+  wire [31:0] state_word;
+  reg [5:0] read = 0;          // words that have been read
+  reg [1:0] index_clocks = 0;  // since state_index has stood
+  wire is_read = read == HIDDEN_WORDS;
+`else
+  localparam HIDDEN_WORDS = `HIDDEN_WORDS;
+  wire [32*HIDDEN_WORDS-1:0] hidden;
+  wire is_read = 1;
+`endif
   wire [47:0] design_digest;
 
-  hk_complementary_fixed core (
+  `CORE core (
     .clk(clk), .rst(rst),
     .in_valid(in_valid), .in_ready(in_ready), .in_channel(in_channel),
     .accel_x(accel_x), .accel_y(accel_y), .accel_z(accel_z),
     .gyro_x(gyro_x), .gyro_y(gyro_y), .gyro_z(gyro_z),
     .out_valid(out_valid), .out_ready(out_ready), .out_channel(out_channel),
     .angle_roll(angle_roll), .angle_pitch(angle_pitch),
-    .bias_roll(bias_roll), .bias_pitch(bias_pitch),
+`ifdef STATE_WORDS
+    .state_index(state_index), .state_word(state_word),
+`else
+    `HIDDEN_PORTS
+`endif
     .restarted(restarted), .saturated(saturated), .design_digest(design_digest)
   );
 
   always #5 clk = !clk;
 
-  integer vectors, results, found;
-  integer sent = 0, taken = 0, clock = 0, last = 0;
+  integer vectors, results, found, word;
+  integer sent = 0, taken = 0, clock = 0, last = 0, latency = 0;
+  reg offered = 0;
   integer sent_at [0:255];  // clocks at which the samples in work were taken
   reg [15:0] noise = 16'hACE1;
   reg [15:0] ch, ax, ay, az, gx, gy, gz;
@@ -84,13 +111,25 @@ module hk_gate_tb;
         sent_at[sent % 256] = clock;
         sent = sent + 1;
       end
+      if (out_valid === 1'b1 && !offered) begin
+        offered = 1;
+        latency = clock - sent_at[taken % 256];
+      end
       if (out_valid === 1'b1 && taken == sent) begin
         $display("error: a result without a sample");
         $finish;
       end else if (out_valid === 1'b1 && out_ready) begin
-        $fdisplay(results, "%h %h %h %h %h %b %b %0d", out_channel, angle_roll, angle_pitch,
-                  bias_roll, bias_pitch, restarted, saturated, clock - sent_at[taken % 256]);
+        $fwrite(results, "%h %h %h ", out_channel, angle_roll, angle_pitch);
+        for (word = 0; word < HIDDEN_WORDS; word = word + 1)
+          $fwrite(results, "%h ", hidden[32*word +: 32]);
+        $fdisplay(results, "%b %b %0d", restarted, saturated, latency);
         taken = taken + 1;
+        offered = 0;
+`ifdef STATE_WORDS
+        read = 0;
+        index_clocks = 0;
+        state_index <= #1 noise;  // it must not matter now
+`endif
         last = clock;
       end
       if (all_sent && taken == sent) begin
@@ -102,7 +141,18 @@ module hk_gate_tb;
         $finish;
       end
     end
-    out_ready <= #1 STALLS ? noise[0] : 1'b1;
+`ifdef STATE_WORDS
+    if (!rst && offered && !is_read) begin
+      if (index_clocks == 3) begin
+        hidden[32*read +: 32] = state_word;
+        read = read + 1;
+        index_clocks = 0;
+      end
+      if (index_clocks == 0) state_index <= #1 read;
+      index_clocks = index_clocks + 1;
+    end
+`endif
+    out_ready <= #1 (STALLS ? noise[0] : 1'b1) && is_read && (HAS_NO_STATE || offered);
   end
 
 endmodule

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, EmulationError
+from hostkit.filters import FILTERS
 from hostkit.fixedpoint import wrap32
 from hostkit.records import read_only
+from hostkit.spec import FixedPointSpec
 from hostkit.synthesis.process import run_tool
 
 FOLDER = Path(__file__).parent
@@ -23,7 +25,7 @@ CELLS = "xilinx/cells_sim.v"
 COMPILE_TIMEOUT_S = 120.0
 RUN_TIMEOUT_S = 900.0
 
-_RESULT = re.compile(r"([0-9a-f]+) ((?:[0-9a-f]{8} ){4})([01]) ([01]) (\d+)")
+_RESULT = re.compile(r"([0-9a-f]+) ((?:[0-9a-f]{8} ){2,})([01]) ([01]) (\d+)")
 
 IntArray = NDArray[np.int64]
 
@@ -37,11 +39,11 @@ class GateRun:
     channel
         Shape ``(N,)``.
     state_raw
-        Roll, pitch and their biases, shape ``(N, 4)``.
+        Roll, pitch and the hidden words that the core shows, shape ``(N, 2 + H)``.
     restarted, saturated
         Shape ``(N,)``.
     latency_cycles
-        Clocks from taking a sample to handing over its result, shape ``(N,)``.
+        Clocks from taking a sample to offering its result, shape ``(N,)``.
     """
 
     design_digest: str
@@ -59,9 +61,15 @@ class GateRun:
 
 
 def play(
-    verilog: str, vectors: IntArray, *, channels: int = 1, stalls: bool = False, mapped: bool = True
+    verilog: str,
+    vectors: IntArray,
+    spec: FixedPointSpec,
+    *,
+    channels: int = 1,
+    stalls: bool = False,
+    mapped: bool = True,
 ) -> GateRun:
-    """Run a core of the entity ``hk_complementary_fixed``.
+    """Run the core of a filter: its entity with the settings of the design inside.
 
     Parameters
     ----------
@@ -69,6 +77,8 @@ def play(
         A netlist of the family xc3sda, or converted Verilog.
     vectors
         Channel, accelerometer and gyroscope counts in sensor axes, shape ``(N, 7)``.
+    spec
+        The design of the core; it says which entity and which ports it has.
     channels
         What the core was converted with.
     stalls
@@ -95,10 +105,21 @@ def play(
         (build / "vectors.txt").write_text(text, encoding="ascii")
         cells = [str(cells_file()), str(MEMORY)] if mapped else []
         options = [f"-Phk_gate_tb.CHANNEL_BITS={bits}", f"-Phk_gate_tb.STALLS={int(stalls)}"]
-        command = ["iverilog", "-g2012", *options, "-s", "hk_gate_tb", "-o", "bench"]
+        command = ["iverilog", "-g2012", *options, *_ports(spec), "-s", "hk_gate_tb", "-o", "bench"]
         run_tool([*command, str(BENCH), "core.v", *cells], build, timeout_s=COMPILE_TIMEOUT_S)
         said = run_tool(["vvp", "-n", "bench"], build, timeout_s=RUN_TIMEOUT_S)
         return _parsed((build / "results.txt").read_text("ascii"), said, len(vectors))
+
+
+def _ports(spec: FixedPointSpec) -> tuple[str, ...]:
+    """Return what the bench has to know of the core, as options of Icarus Verilog."""
+    core = f"-DCORE=hk_{spec.filter}_fixed"
+    if spec.tells_state:
+        return (core, f"-DSTATE_WORDS={len(spec.hidden)}")
+    own = FILTERS[spec.filter].core
+    ports = () if own is None else own.facts(spec, False).hidden_ports
+    parts = (f".{port.name}(hidden[{32 * i} +: 32])," for i, port in enumerate(ports))
+    return (core, f"-DHIDDEN_WORDS={len(ports)}", f"-DHIDDEN_PORTS={' '.join(parts)}")
 
 
 def cells_file() -> Path:
@@ -129,14 +150,14 @@ def _parsed(results: str, said: str, samples: int) -> GateRun:
     digest, *rows = lines[:-1]
     if len(rows) != samples:
         raise EmulationError(f"the simulation wrote {len(rows)} results for {samples} samples")
-    values = np.array([_parsed_row(row) for row in rows], dtype=np.int64).reshape(-1, 8)
+    values = np.array([_parsed_row(row) for row in rows], dtype=np.int64)
     return GateRun(
         design_digest=digest,
         channel=values[:, 0].copy(),
-        state_raw=wrap32(values[:, 1:5]),
-        restarted=values[:, 5] == 1,
-        saturated=values[:, 6] == 1,
-        latency_cycles=values[:, 7].copy(),
+        state_raw=wrap32(values[:, 1:-3]),
+        restarted=values[:, -3] == 1,
+        saturated=values[:, -2] == 1,
+        latency_cycles=values[:, -1].copy(),
     )
 
 

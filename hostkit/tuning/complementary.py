@@ -40,7 +40,8 @@ def tuning_problem(
         If the free and fixed parameters do not go together.
     """
     period_s = 1.0 / recordings[0].rate_hz
-    free = options.free or FREE
+    fixed = {one.name for one in options.fixed}
+    free = options.free or tuple(name for name in FREE if name not in fixed)
     space = search_space(options.axes, period_s, free, options.fixed, options.ranges)
     layout = Layout(
         axes=options.axes,
@@ -83,9 +84,16 @@ def _tunable(name: FreeName) -> Tunable:
     )
 
 
+def _key(name: FreeName, axis: str | None) -> str:
+    if name == "tau":
+        return BY_NAME["eta"].key(None)
+    return BY_NAME[name].key(next((a for a in AXES["both"] if a == axis), None))
+
+
 COMPLEMENTARY_TUNER = Tuner(
     name="complementary",
     tunables=tuple(_tunable(r.name) for r in RANGES),
+    key=_key,
     free=FREE,
     default=lambda: parameters(USUAL_ETA),
     task=tuning_problem,

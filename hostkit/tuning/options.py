@@ -5,6 +5,7 @@ from typing import Literal
 
 from hostkit.errors import HostkitError
 from hostkit.mounting import Mounting
+from hostkit.provenance import CalibrationRecord
 from hostkit.records import AxisChoice, Objective, SensorConfig, TiltMethod
 from hostkit.tuning.dimension import FixedParameter, FreeName, SearchRange
 
@@ -39,6 +40,8 @@ class TuningOptions:
         Of the search: float32 takes half the memory and time and is good to four digits.
     sensor
         Configuration of the sensor; by default from the recordings.
+    calibration
+        Of the sensor; its terms are fixed, and the design keeps it.
     held_out
         Whether recordings are left out in turn, for an honest figure.
     resamples
@@ -61,6 +64,7 @@ class TuningOptions:
     jobs: int = 1
     precision: Precision = "float64"
     sensor: SensorConfig | None = None
+    calibration: CalibrationRecord | None = None
     held_out: bool = True
     resamples: int = 40
 

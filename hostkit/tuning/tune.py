@@ -15,6 +15,7 @@ from hostkit.optimisers import SwarmResult
 from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import FilterDesign, RecordingDigest, TuningRecord
 from hostkit.tuning.archive import archived
+from hostkit.tuning.calibration import with_calibration
 from hostkit.tuning.determination import Interval, Profile, intervals, profiles, remarks
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
 from hostkit.tuning.options import TuningOptions
@@ -88,6 +89,7 @@ def _tune(
         rate_hz=rate_hz,
         sensor=options.sensor or sensor_config(recordings, rate_hz),
         parameters=problem.space.design_parameters(swarm.x),
+        calibration=options.calibration,
     )
     evaluations = tuple(evaluate(design, _in_memory(recording)) for recording in recordings)
     rms = _training_rms_rad(design, problem, swarm.x, recordings, evaluations)
@@ -122,8 +124,8 @@ def tuning_task(recordings: tuple[AnyRecording, ...], options: TuningOptions, fo
     DesignError
         If the free and fixed parameters do not go together.
     """
-    _common_rate(recordings)
-    return TUNERS[options.filter].task(recordings, options, folder)
+    rate_hz = _common_rate(recordings)
+    return TUNERS[options.filter].task(recordings, with_calibration(options, rate_hz), folder)
 
 
 def _in_memory(recording: AnyRecording) -> Recording:

@@ -48,6 +48,8 @@ class Tuner:
         Name of the filter.
     tunables
         What can be searched or fixed.
+    key
+        Name in a design of a kind of parameter, and of an axis where it has several.
     free
         What is searched if nothing is said.
     default
@@ -58,6 +60,7 @@ class Tuner:
 
     name: str
     tunables: tuple[Tunable, ...]
+    key: Callable[[FreeName, str | None], str]
     free: tuple[FreeName, ...]
     default: Callable[[], tuple[Parameter, ...]]
     task: Callable[[tuple[AnyRecording, ...], TuningOptions, Path], Task]

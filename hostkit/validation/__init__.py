@@ -1,6 +1,5 @@
 """A device trace held against the integer and the float model of its design."""
 
-from hostkit.filters.filter import DeviceParameter
 from hostkit.validation.checks import Check, checks
 from hostkit.validation.histogram import Histogram, LogHistogram
 from hostkit.validation.judged import Judged
@@ -16,7 +15,6 @@ __all__ = [
     "DEFAULT_MAX_LOST_SHARE",
     "DEFAULT_MAX_RMS_DEG",
     "Check",
-    "DeviceParameter",
     "Histogram",
     "Judged",
     "LogHistogram",

@@ -55,7 +55,7 @@ class Follower:
         As in :class:`hostkit.validation.Validator`.
     """
 
-    waits = False
+    waits = needs_state = False
 
     def __init__(self, design: FilterDesign, designed: Model, tolerance_rad: float | None) -> None:
         self._sensor = design.sensor

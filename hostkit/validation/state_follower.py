@@ -73,6 +73,11 @@ class StateFollower:
         self._told = ToldStates()
         self._confirmed = 0
 
+    @property
+    def needs_state(self) -> bool:
+        """Whether no sample can be computed before a state is told."""
+        return self._float_state is None
+
     def device_rad(self, trace: AngleTrace) -> Vector:
         """Return the angles of the device, shape ``(N, A)``."""
         angles: Vector = trace.state_raw[:, : self._axes] * self._per_unit[: self._axes]
@@ -84,7 +89,7 @@ class StateFollower:
         Parameters
         ----------
         anew
-            Whether the sample counter began anew with one of them.
+            Whether the sample counter began anew with the first of them.
 
         Returns
         -------

@@ -1,7 +1,7 @@
 """States that a device told, put to the samples that they belong to."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hostkit.records import ToldState
 from hostkit.validation.order import COUNTER, WINDOW
@@ -50,7 +50,7 @@ class ToldStates:
     ) -> SortedOut:
         """Take the states that came with some samples.
 
-        What belongs to none waits for the next samples, for the device may begin anew with them;
+        What belongs to none waits for the next sample, for the device may begin anew with it;
         after that it is wrong, unless its sample was lost, left out, or is just ahead.
 
         Parameters
@@ -60,19 +60,20 @@ class ToldStates:
         sequence, recent
             Counters of the samples, and of samples that were passed lately.
         anew
-            Whether the counter began anew with one of the samples.
+            Whether the counter began anew with the first sample.
         """
         here = set(sequence)
-        earlier, self._due = self._due, []
-        self._now, late, wrong = {}, [], 0
+        earlier = [replace(state, behind=0) for state in self._due]
+        self._due, self._now = [], {}
+        late, wrong = [], 0
         for state in (*earlier, *told):
             if state.sequence in here:
                 self._now[state.sequence] = state.words_raw
             elif state.sequence in recent:
                 late.append(state)
-            elif not sequence or state in told:
+            elif state.behind == len(sequence):
                 self._due.append(state)
-            elif not anew:
+            elif not (anew and state.behind == 0):
                 wrong += self._keep_or_count(state, sequence[-1])
         surplus = max(0, len(self._due) - MOST_DUE)
         self._due = self._due[surplus:]

@@ -119,6 +119,11 @@ class Validator:
         """Parameters that the device uses and has not told; empty while it runs its design."""
         return self._retuning.untold if self._is_retuned else ()
 
+    @property
+    def needs_state(self) -> bool:
+        """Whether samples wait for the device to tell the state of its filter."""
+        return self.samples > 0 and self._follower.needs_state
+
     def add(self, trace: AngleTrace) -> Judged:
         """Take further samples.
 
@@ -127,16 +132,19 @@ class Validator:
         Judged
             What came in order, beside the models.
         """
-        trace, step, follows = self._in_order(trace)
+        trace, step, follows, anew = self._in_order(trace)
         device = self._follower.device_rad(trace)
         model = np.full((len(trace), len(self._axes)), np.nan)
         wrong = np.zeros(len(trace), dtype=np.bool_)
         retuned = np.zeros_like(follows) if trace.retuned is None else trace.retuned
-        for run in runs(retuned.tolist()):
-            used = self._model(is_retuned=bool(retuned[run.start]))
-            steps = self._judge(used, trace.part(run), follows[run])
-            if steps is not None:
-                model[run], wrong[run] = steps.exact, steps.wrong
+        for piece in _pieces(anew):
+            self._hear(trace.part(piece), anew=bool(anew[piece][:1].any()))
+            for run in runs(retuned[piece].tolist()):
+                part = slice(piece.start + run.start, piece.start + run.stop)
+                used = self._model(is_retuned=bool(retuned[part.start]))
+                steps = self._judge(used, trace.part(part), follows[part])
+                if steps is not None:
+                    model[part], wrong[part] = steps.exact, steps.wrong
         residual = wrap_rad(device - model)
         self._track(step, model, residual, ~follows)
         return Judged(
@@ -148,14 +156,13 @@ class Validator:
             begins=~follows,
         )
 
-    def _in_order(self, trace: AngleTrace) -> tuple[AngleTrace, IntArray, BoolArray]:
-        """Return the samples that are to be judged, their steps, and which follow."""
+    def _in_order(self, trace: AngleTrace) -> tuple[AngleTrace, IntArray, BoolArray, BoolArray]:
+        """Return the samples to be judged, their steps, which follow, and which begin anew."""
         columns = (trace.time_us[:, None], trace.accel_count, trace.gyro_count, trace.state_raw)
         contents = [row.tobytes() for row in np.hstack(columns)]
         restarts = self._order.restarts
         found = places(self._order, trace.sequence.tolist(), contents, trace.restarted.tolist())
         names = [place for place, _ in found]
-        anew = "anew" in names
         self.samples += len(names) - names.count("repeated")
         if self._order.restarts > restarts:
             self._retuning.forget()
@@ -163,11 +170,11 @@ class Validator:
             self._retuning.doubt()
         kept = np.array([name not in ("late", "repeated") for name in names], dtype=np.bool_)
         follows = np.array([name == "follows" for name in names], dtype=np.bool_)
+        anew = np.array([name == "anew" for name in names], dtype=np.bool_)
         step = np.array([step for _, step in found], dtype=np.int64)
-        if not kept.all():
-            trace, step, follows = trace.part(kept), step[kept], follows[kept]
-        self._hear(trace, anew=anew)
-        return trace, step, follows
+        if kept.all():
+            return trace, step, follows, anew
+        return trace.part(kept), step[kept], follows[kept], anew[kept]
 
     def _hear(self, trace: AngleTrace, *, anew: bool) -> None:
         """Count wrong states that came apart from their samples."""
@@ -284,3 +291,9 @@ class Validator:
             residual=tuple(entry for entry in residual if entry is not None),
             retuned=self._retuning.differences() if self._was_retuned else (),
         )
+
+
+def _pieces(anew: BoolArray) -> list[slice]:
+    """Return the stretches of samples of one run of the device; one at least, if empty."""
+    begins = [0, *(int(k) for k in np.flatnonzero(anew) if k > 0)]
+    return [slice(a, b) for a, b in zip(begins, [*begins[1:], len(anew)], strict=True)]

@@ -15,7 +15,9 @@ from live import emulated
 from pymavlink.mavparm import MAVParmDict
 
 from hostkit.cli.main import run
+from hostkit.cli.params_output import Shown
 from hostkit.design_file import digest, save_design
+from hostkit.link.device.parameter_entry import ParameterEntry
 from hostkit.link.device.parameter_facts import parameter_facts
 from hostkit.link.frames.encoder import Encoder
 from hostkit.link.frames.signing import SigningKey, setup_signing_message
@@ -273,3 +275,13 @@ def go_through_all(port: str, design_file: Path, tmp_path: Path, capsys) -> None
     assert [row["name"] for row in done] == ["FILT_TAU", "TILT_OFS_ROLL"]
     assert done[0]["in_use"] == tau["value"]
     assert params("diff", file)["differences"] == []
+
+
+def test_what_says_the_same_as_a_value_is_null_where_no_rate_is_known() -> None:
+    entry = ParameterEntry(name="FILT_TAU", value=0.49, index=0)
+    for rate_hz, eta in ((None, None), (100.0, pytest.approx(0.98))):
+        row = Shown(facts=parameter_facts(), rate_hz=rate_hz, measured=False).row(entry)
+        assert row["eta"] == eta
+    assert "eta" not in Shown(facts=parameter_facts(), rate_hz=100.0, measured=False).row(
+        ParameterEntry(name="SYS_ID", value=1.0, index=1)
+    )

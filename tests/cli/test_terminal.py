@@ -12,6 +12,7 @@ from rich.console import Console
 
 from hostkit.cli.terminal import PlainView, new_notices, printable, view_for
 from hostkit.cli.terminal_table import LEVEL_COLOUR, TableView
+from hostkit.filters.filter import Fact
 from hostkit.link.statistics import LinkStatistics, Spread, TimingStatistics
 from hostkit.monitor.snapshot import (
     Batch,
@@ -31,9 +32,11 @@ INFO = SessionInfo(
     design_digest="0123456789ab",
     axes=("roll", "pitch"),
     rate_hz=200.0,
-    eta=0.9965,
-    tau_s=1.4236,
-    crossover_hz=0.1118,
+    filter="complementary filter",
+    facts=(
+        Fact(name="eta", label="eta", value=0.9965),
+        Fact(name="tau_s", label="tau", value=1.4236, unit="s"),
+    ),
     port="/dev/ttyUSB0",
     replay=False,
     hostkit_version="0.1",

@@ -122,10 +122,10 @@ def changes_eta(page) -> None:
         tau_from_eta(eta, DESIGN.period_s) for eta in (DESIGN.parameter("eta"), NEW_ETA)
     )
     until(page, lambda: uses_tau(page, tau_s), f"tau {tau_s:g} s in use")
-    page.locator("#tau-eta").fill(f"{NEW_ETA}")
-    page.locator("#tau").get_by_role("button", name="Apply").click()
+    page.locator("#viewed-other").fill(f"{NEW_ETA}")
+    page.locator("#viewed").get_by_role("button", name="Apply").click()
     until(page, lambda: uses_tau(page, new_tau_s), f"tau {new_tau_s:g} s in use")
-    assert f"\N{GREEK SMALL LETTER ETA} {NEW_ETA}" in shown(page, "#tau-used")
+    assert f"\N{GREEK SMALL LETTER ETA} {NEW_ETA}" in shown(page, "#viewed-used")
     page.locator("#retuned").wait_for(state="visible")
     sees_more(page, 100)
     assert mismatches(page) == 0
@@ -136,7 +136,7 @@ def changes_eta(page) -> None:
 
 def uses_tau(page, tau_s: float) -> bool:
     """Tell whether the page says that the device uses a time constant, within its rounding."""
-    in_use = re.search(r"[\d.]*\d", shown(page, "#tau-used"))
+    in_use = re.search(r"[\d.]*\d", shown(page, "#viewed-used"))
     return in_use is not None and float(in_use.group()) == pytest.approx(tau_s, rel=2e-3)
 
 

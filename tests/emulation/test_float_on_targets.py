@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import TARGET_TOOLS, hear, require_or_skip, stimulus
+from boards import RESTARTED, TARGET_TOOLS, hear, require_or_skip, stimulus
 from designs import all_parameters
+from ground import Ground
 
 from hostkit.emulation import avr_board, host_board, rp2040_board, stm32_board
 from hostkit.filters.complementary import lower, run_float
@@ -42,3 +43,15 @@ def test_it_follows_the_float_model(tmp_path: Path, target: str) -> None:
     apart = np.abs((got - wanted + np.pi) % (2.0 * np.pi) - np.pi)
     assert 0.0 < np.degrees(apart[:, :2].max()) < TOLERANCE_DEG
     assert apart[:, 2:].max() < 1e-5
+
+
+def test_a_bias_starts_the_filter_with_an_integral_anew(tmp_path: Path) -> None:
+    require_or_skip(*TARGET_TOOLS["host"])
+    write(generate(DESIGN, TARGETS["host"], FirmwareOptions(arithmetic="float")), tmp_path)
+    host_board.build(tmp_path)
+    ground = Ground()
+    ground.set(0.5, "FILT_TAU", 2.0)
+    ground.set(1.0, "GYRO_BIAS_PITCH", 0.01)
+    samples = ground.run(tmp_path, stimulus(150, DESIGN)).samples
+    first, again = (s.sequence for s in samples if s.flags & RESTARTED)
+    assert (first, 0 < again < 150) == (0, True)

@@ -1,4 +1,5 @@
 import json
+import math
 import os
 import signal
 import subprocess
@@ -14,6 +15,7 @@ from fleet_work import files_of, make_fleet, spoil
 
 from hostkit.cli.fleet import Progress
 from hostkit.design_file import edited_by_hand
+from hostkit.filters.filter import Fact
 from hostkit.fleet import FleetResult, Step
 from hostkit.fleet.records import DeviceResult
 
@@ -53,6 +55,7 @@ def test_the_summary_tells_of_each_device_what_its_design_says(
             "digest": design["digest"],
             "eta": eta,
             "tau_s": pytest.approx(0.01 * eta / (1.0 - eta)),
+            "crossover_hz": pytest.approx((1.0 - eta) / (0.01 * eta * 2.0 * math.pi)),
             "rmse_deg": design["tuning"]["rmse_deg"],
             "error": None,
         }
@@ -108,16 +111,19 @@ def test_the_report_names_every_device(call, fleet: Path, tmp_path: Path) -> Non
     devices = json.loads((tmp_path / "out" / "fleet.json").read_text())["devices"]
     for entry in devices:
         if entry["digest"]:
-            assert f"<td>{entry['digest']}</td><td>{entry['eta']:.6f}</td>" in text
-    assert text.count("<svg") == 2
+            assert f"<td>{entry['digest']}</td><td>{entry['eta']:.6g}</td>" in text
+    assert text.count("<svg") == 4
     assert "run0 has no reference" in text
     assert "dev&lt;b&gt;3" in text
     assert "<b>3" not in text.replace("</small>", "").replace("<b>3</b>", "")
 
 
+ETA = Fact(name="eta", label="eta", value=0.5)
+
+
 def result(name: str, error: str = "") -> DeviceResult:
     status = "failed" if error else "ok"
-    return DeviceResult(device=name, status=status, recordings=1, eta=0.5, error=error)
+    return DeviceResult(device=name, status=status, recordings=1, facts=(ETA,), error=error)
 
 
 def test_a_terminal_has_a_counter_and_the_failures(capsys: pytest.CaptureFixture[str]) -> None:
@@ -137,7 +143,7 @@ def test_a_terminal_has_a_counter_and_the_failures(capsys: pytest.CaptureFixture
 def test_remarks_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
     progress = Progress(clock=time.monotonic, on_terminal=False)
     progress.show(Step(result=result("d"), done=1, total=1, remarks=("look",), seconds=0.1))
-    assert capsys.readouterr().err == "1/1 d: eta 0.500000; look (0.10 s)\n"
+    assert capsys.readouterr().err == "1/1 d: eta 0.5; look (0.10 s)\n"
 
 
 @contextmanager

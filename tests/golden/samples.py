@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 from designs import all_parameters, design
+from observing import all_counts, full_design
 from vectors import against_the_limit, near_1_g
 
-from hostkit.filters.complementary import lower
+from hostkit.filters import FILTERS
 from hostkit.records import FilterDesign
 from hostkit.render import render_target
 from hostkit.targets import TARGETS
@@ -18,7 +19,7 @@ MCU_NAMES = ("host", "atmega328p")
 FPGA_NAME = "spartan3adsp"
 VECTORS = "vectors.txt"
 HEADER = "accel x y z, gyro x y z: s16 counts; roll, pitch: s32 half turns; restarted"
-BIAS_HEADER = "; bias: s32 half turns per sample with {} fraction bits"
+HIDDEN_HEADER = "; hidden words: s32"
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,15 @@ class Sample:
 
     @property
     def header(self) -> str:
-        integral = lower(self.design).integral
-        return HEADER + (BIAS_HEADER.format(integral.fraction_bits) if integral else "")
+        hidden = FILTERS[self.design.filter].lower(self.design).hidden
+        words = ", ".join(f"{word.name} ({word.per_unit:.6g} {word.unit})" for word in hidden)
+        return f"{HEADER}{HIDDEN_HEADER} {words}" if hidden else HEADER
 
     @property
     def counts(self) -> np.ndarray:
         """The stimulus, and for a filter with more than eta what tries the rest of it."""
+        if self.design.filter == "observer":
+            return all_counts(self.design)
         if len(self.design.parameters) == 1:
             return stimulus()
         more = [near_1_g(self.design), against_the_limit(self.design, (400, 500))]
@@ -61,6 +65,7 @@ SAMPLES = (
             low_pass_setting=5,
         ),
     ),
+    Sample("observer", full_design()),
     Sample("all-parameters", all_parameters(), ("spartan3adsp", "ecp5")),
 )
 

@@ -14,10 +14,20 @@ int main(void)
     while (scanf("%hd %hd %hd %hd %hd %hd", &accel[0], &accel[1], &accel[2], &gyro[0], &gyro[1],
                  &gyro[2]) == 6) {
         const int restarted = hk_filter_update(&filter, accel, gyro) ? 1 : 0;
-        const int32_t hidden[2] = HK_FILTER_HIDDEN(&filter);
+        int32_t angle[HK_ANGLES];
+#if HK_FILTER_STATE_WORDS
+        int32_t hidden[HK_FILTER_STATE_WORDS];
 
-        printf("%ld %ld %d ", (long)filter.angle[HK_ROLL], (long)filter.angle[HK_PITCH], restarted);
-        printf("%ld %ld\n", (long)hidden[0], (long)hidden[1]);
+        hk_filter_state(&filter, hidden);
+#else
+        const int32_t hidden[2] = HK_FILTER_HIDDEN(&filter);
+#endif
+        hk_filter_angles(&filter, angle);
+        printf("%ld %ld %d", (long)angle[HK_ROLL], (long)angle[HK_PITCH], restarted);
+        for (size_t i = 0; i < sizeof hidden / sizeof hidden[0]; i++) {
+            printf(" %ld", (long)hidden[i]);
+        }
+        printf("\n");
     }
     return 0;
 }

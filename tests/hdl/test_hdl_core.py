@@ -128,7 +128,7 @@ def test_the_core_converts_for_synthesis(core: Core) -> None:
 @pytest.mark.parametrize(
     ("source", "good", "bad"),
     [
-        ("hk_design_pkg.vhd", "to_signed(117441, 18)", "to_signed(117440, 18)"),
+        ("hk_complementary_design_pkg.vhd", "to_signed(117441, 18)", "to_signed(117440, 18)"),
         ("hk_design_pkg.vhd", "to_signed(41719, 18)", "to_signed(41718, 18)"),
         ("hk_common_pkg.vhd", "(b & carry)", "(b & '0')"),
         ("hk_arctan.vhd", "if nothing_r = '1' then", "if false then"),
@@ -178,7 +178,11 @@ def test_the_vectors_reach_every_turn_of_the_arc_tangent() -> None:
 @pytest.mark.parametrize(
     ("source", "good", "bad"),
     [
-        ("hk_design_pkg.vhd", "gate_lowest_c  : unsigned(31 downto 0) := to_unsigned(2174", "1"),
+        (
+            "hk_complementary_design_pkg.vhd",
+            "gate_lowest_c  : unsigned(31 downto 0) := to_unsigned(2174",
+            "1",
+        ),
         (CORE, "square_r <= settings.gate_highest", "square_r < settings.gate_highest"),
         (CORE, "and stored_started = '0' then", "and false then"),
         ("hk_complementary_pkg.vhd", "return bias_limit_c", "return bias"),

@@ -16,6 +16,7 @@ BENCHES = Path(__file__).parent / "benches"
 SOURCES = (
     "hk_common_pkg",
     "hk_design_pkg",
+    "hk_complementary_design_pkg",
     "hk_complementary_pkg",
     "hk_regs_pkg",
     "hk_regs",

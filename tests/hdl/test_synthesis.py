@@ -9,6 +9,7 @@ from gate_cases import CONFIGURATIONS, TOP, Configuration, assert_equal, generat
 
 from hostkit.emulation.tools import require
 from hostkit.errors import BuildError, ToolMissingError
+from hostkit.filters.complementary import lower
 from hostkit.synthesis import Converted, Mapped, convert, map_netlist
 from hostkit.synthesis.mapping import FAMILIES
 from hostkit.synthesis.netlist import play
@@ -63,12 +64,14 @@ def test_the_converted_core_equals_the_integer_model(
 ) -> None:
     played = vectors(configuration, CONVERTED_SAMPLES)
     options = {"channels": configuration.channels, "mapped": False}
-    assert_equal(play(converted.text, played, stalls=True, **options), configuration, played)
+    run = play(converted.text, played, lower(configuration.design), stalls=True, **options)
+    assert_equal(run, configuration, played)
 
 
 def test_the_gates_equal_the_integer_model(configuration: Configuration, mapped: Mapped) -> None:
     played = vectors(configuration, MAPPED_SAMPLES)
-    run = play(mapped.netlist, played, channels=configuration.channels)
+    spec = lower(configuration.design)
+    run = play(mapped.netlist, played, spec, channels=configuration.channels)
     assert_equal(run, configuration, played)
 
 

@@ -13,6 +13,7 @@ from designs import design
 from device import Device
 from judging import feed
 
+from hostkit.filters.filter import Fact
 from hostkit.link.frames.decoder import Decoder
 from hostkit.link.statistics import LinkStatistics, SourceStatistics, Spread, TimingStatistics
 from hostkit.monitor.collect import MOST_POINTS, JitterCollector, OverlayCollector
@@ -30,9 +31,11 @@ INFO = SessionInfo(
     design_digest="0123456789ab",
     axes=("roll", "pitch"),
     rate_hz=100.0,
-    eta=0.9965,
-    tau_s=2.847,
-    crossover_hz=0.0559,
+    filter="complementary filter",
+    facts=(
+        Fact(name="eta", label="eta", value=0.9965),
+        Fact(name="tau_s", label="tau", value=1.4236, unit="s"),
+    ),
     port="/dev/ttyUSB0",
     replay=False,
     hostkit_version="0",

@@ -61,9 +61,10 @@ class Case:
     settings: SmootherSettings
     limit_deg: float
     plane: bool = False
+    automatic: bool = False
 
     def __str__(self) -> str:
-        return f"{self.folder}-{self.settings.lead_s * 1e3:g}ms"
+        return f"{self.folder}-{self.settings.lead_s * 1e3:g}ms{'-auto' * self.automatic}"
 
 
 CASES = (
@@ -72,6 +73,7 @@ CASES = (
     Case(folder="repoimu_pendulum", settings=PENDULUM, limit_deg=1.35, plane=True),
     Case(folder="robot_mpu", settings=ROBOT, limit_deg=2.2),
     Case(folder="upenn_arduimu", settings=TEN_BITS, limit_deg=0.95),
+    Case(folder="upenn_arduimu", settings=GOOD_SENSOR, limit_deg=1.3, automatic=True),
 )
 
 
@@ -89,6 +91,7 @@ def error_deg(recording: Recording, case: Case) -> float:
         recording.specific_force_m_s2,
         1.0 / recording.rate_hz,
         case.settings,
+        automatic=case.automatic,
     )
     truth = recording.up_reference
     assert truth is not None

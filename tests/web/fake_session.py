@@ -15,6 +15,8 @@ import numpy as np
 
 import hostkit
 from hostkit.errors import HostkitError
+from hostkit.filters.complementary.run_time import tau_views
+from hostkit.filters.filter import Fact
 from hostkit.link.statistics import LinkStatistics, SourceStatistics, Spread, TimingStatistics
 from hostkit.monitor.snapshot import (
     Batch,
@@ -61,9 +63,11 @@ def info(*, rate_hz: float = 100.0, replayed: bool = False) -> SessionInfo:
         design_digest="0123456789ab",
         axes=("roll", "pitch"),
         rate_hz=rate_hz,
-        eta=0.98,
-        tau_s=0.98 / rate_hz / 0.02,
-        crossover_hz=rate_hz * 0.02 / 0.98 / (2.0 * math.pi),
+        filter="complementary filter",
+        facts=(
+            Fact(name="eta", label="eta", value=0.98),
+            Fact(name="tau_s", label="tau", value=0.98 / rate_hz / 0.02, unit="s"),
+        ),
         port="file:flight.tlog" if replayed else "/dev/ttyUSB0",
         replay=replayed,
         hostkit_version=hostkit.__version__,
@@ -147,7 +151,14 @@ def parameters(tau_s: float = 0.49) -> tuple[ParameterState, ...]:
         ParameterState(name="CAL_START", value=0.0, unit="", lowest=0.0, highest=1.0),
         *(
             ParameterState(
-                name=name, value=value, unit=unit, design_value=value, lowest=low, highest=high
+                name=name,
+                value=value,
+                unit=unit,
+                design_value=value,
+                lowest=low,
+                highest=high,
+                symbol="\N{GREEK SMALL LETTER TAU}" if name == "FILT_TAU" else "",
+                views=tau_views(0.01) if name == "FILT_TAU" else (),
             )
             for name, unit, value, low, high in filter_ones
         ),
@@ -180,7 +191,7 @@ class FakeControls:
     lock: threading.RLock = field(default_factory=threading.RLock)
 
     def __post_init__(self) -> None:
-        self.change(parameters=parameters(self.info().tau_s))
+        self.change(parameters=parameters(self.info().facts[1].value))
         if self.replayed:
             replay = ReplayState(
                 position_s=0.0, length_s=LENGTH_S, speed=1.0, paused=False, ended=False

@@ -20,7 +20,8 @@ def test_session_says_what_it_is(app: App) -> None:
     assert reply["version"] == hostkit.__version__
     assert reply["info"]["design_digest"] == "0123456789ab"
     assert reply["info"]["axes"] == ["roll", "pitch"]
-    assert reply["info"]["tau_s"] == pytest.approx(0.49)
+    facts = {fact["name"]: fact["value"] for fact in reply["info"]["facts"]}
+    assert facts["tau_s"] == pytest.approx(0.49)
 
 
 @pytest.mark.parametrize(

@@ -183,16 +183,16 @@ def test_it_fits_one_screen_without_scrolling(session) -> None:
 def test_the_time_constant_is_set_as_tau_or_as_eta(session) -> None:
     one = session()
     page = one.open()
-    said(page, "#tau-used", r"in use τ 0\.49 s · η 0\.98 · 0\.325 Hz$")
-    page.fill("#tau-eta", "0.99")
-    assert float(page.input_value("#tau-value")) == pytest.approx(0.99)
-    page.press("#tau-eta", "Enter")
+    said(page, "#viewed-used", r"in use τ 0\.49 s · η 0\.98 · 0\.325 Hz$")
+    page.fill("#viewed-other", "0.99")
+    assert float(page.input_value("#viewed-value")) == pytest.approx(0.99)
+    page.press("#viewed-other", "Enter")
     one.called(page, "set_parameter", "FILT_TAU", 0.99)
-    said(page, "#tau-used", r"in use τ 0\.99 s · η 0\.99 · 0\.161 Hz")
-    page.focus("#tau-slide")
+    said(page, "#viewed-used", r"in use τ 0\.99 s · η 0\.99 · 0\.161 Hz")
+    page.focus("#viewed-slide")
     page.keyboard.press("ArrowRight")
-    assert float(page.input_value("#tau-value")) == pytest.approx(1.0, rel=0.02)
-    assert page.get_attribute("#tau-slide", "aria-valuetext").endswith(" s")
+    assert float(page.input_value("#viewed-value")) == pytest.approx(1.0, rel=0.02)
+    assert page.get_attribute("#viewed-slide", "aria-valuetext").endswith(" s")
 
 
 def test_a_parameter_is_set_refused_and_reverted(session) -> None:
@@ -214,10 +214,10 @@ def test_a_parameter_is_set_refused_and_reverted(session) -> None:
 def test_a_value_that_is_being_typed_is_left_alone(session) -> None:
     one = session()
     page = one.open()
-    page.fill("#tau-value", "0.3")
+    page.fill("#viewed-value", "0.3")
     seen = text(page, "#elapsed")
     until(page, f"document.getElementById('elapsed').textContent !== '{seen}'")
-    assert page.input_value("#tau-value") == "0.3"
+    assert page.input_value("#viewed-value") == "0.3"
 
 
 def test_commands_port_and_verdict(session) -> None:
@@ -288,7 +288,7 @@ def test_pause_scroll_back_zoom_and_live_by_keyboard(session) -> None:
     page.keyboard.press("ArrowRight")
     page.click("#live")
     said(page, "#scroll-said", "^live$")
-    page.focus("#tau-value")
+    page.focus("#viewed-value")
     page.keyboard.press("Home")
     page.keyboard.press("?")
     assert not page.locator("#keys").is_visible()
@@ -399,9 +399,9 @@ def test_a_lost_or_released_port_is_said_across_the_page(session) -> None:
 def test_two_browsers_at_once(session) -> None:
     one = session()
     first, second = one.open(), one.open()
-    first.fill("#tau-value", "0.3")
-    first.press("#tau-value", "Enter")
-    said(second, "#tau-used", r"in use τ 0\.3 s")
+    first.fill("#viewed-value", "0.3")
+    first.press("#viewed-value", "Enter")
+    said(second, "#viewed-used", r"in use τ 0\.3 s")
     for page in (first, second):
         before = page.evaluate("window.hostkit.frames")
         until(page, f"window.hostkit.frames > {before + 5}")
@@ -430,7 +430,7 @@ def test_replay_is_held_sped_up_and_sought(session) -> None:
     one.called(page, "seek", 60.0)
     said(page, "#epoch", "^epoch 1$")
     assert page.locator("#port-button").is_hidden()
-    assert page.locator("#tau-apply").is_disabled()
+    assert page.locator("#viewed-apply").is_disabled()
 
 
 def test_hostile_texts_are_only_texts(session) -> None:

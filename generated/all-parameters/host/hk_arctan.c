@@ -1,4 +1,4 @@
-/* made by hostkit 0.1.0 from design 0099cab74159; do not edit; template complementary/hk_arctan.c.j2 */
+/* made by hostkit 0.1.0 from design 0099cab74159; do not edit; template fixed/hk_arctan.c.j2 */
 #include "hk_arctan.h"
 
 #include "hk_divide.h"
@@ -11,6 +11,7 @@
 #define HK_RATIO_DIGITS 14
 #define HK_STRETCH_FRAC 18
 #define HK_ROOT_FRAC    8
+#define HK_LEAST_WORD_BITS 13
 #define HK_SLOPE_RAW    UINT16_C(41719)  /* 162.9647145421576 half turns / 2^31 per 2^-22, s8.8 */
 #define HK_SLOPE_FRAC   8
 
@@ -160,6 +161,33 @@ int32_t hk_atan2_length(int32_t y_count, const hk_length_t *length)
 
     return hk_with_sign_of(y_count,
                            hk_quadrant(hk_with_guard_bits(size) + more, length->raw, NULL));
+}
+
+static uint32_t hk_word_size(int32_t word)
+{
+    return word < 0 ? 0U - (uint32_t)word : (uint32_t)word;
+}
+
+int32_t hk_atan2_word(int32_t y, int32_t x, hk_length_t *length)
+{
+    uint32_t angle;
+
+    if (((hk_word_size(y) | hk_word_size(x)) >> HK_LEAST_WORD_BITS) == 0U) {
+        y = 0;
+        x = 0;
+    }
+    angle = hk_quadrant(hk_word_size(y), hk_word_size(x), length);
+    return hk_with_sign_of(y, x < 0 ? HK_QUARTER_TURNS(2) - angle : angle);
+}
+
+int32_t hk_atan2_word_length(int32_t y, const hk_length_t *length)
+{
+    const uint32_t size = hk_word_size(y);
+    const uint32_t stretch = hk_stretches[length->turn] << (32 - HK_STRETCH_FRAC);
+
+    return hk_with_sign_of(
+        y, hk_quadrant(size + (uint32_t)hk_product((int32_t)size, (int32_t)stretch), length->raw,
+                       NULL));
 }
 
 /* Square root of a number below 2^30, with HK_ROOT_FRAC fraction bits, truncated. */

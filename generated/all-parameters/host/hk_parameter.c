@@ -5,6 +5,9 @@
 
 #include "hk_flash.h"
 
+/* A row of the table below. */
+#define HK_ROW(name, which) {#name, which},
+
 #define HK_SYSTEM_ID_MAX       254 /* 255 is the ground station's */
 #define HK_SYSTEM_ID_FORBIDDEN 250 /* where MAVProxy's modules are */
 
@@ -20,15 +23,7 @@ typedef struct {
 static const hk_row_t rows[HK_PARAMETERS] HK_FLASH = {
     {"SYS_ID", OWN_SYSTEM_ID},
     {"CAL_START", OWN_CALIBRATE_AT_START},
-    {"FILT_TAU", HK_FILTER_TAU},
-#if HK_DESIGN_ROLL
-    {"GYRO_BIAS_ROLL", HK_FILTER_BIAS_ROLL},
-    {"TILT_OFS_ROLL", HK_FILTER_OFFSET_ROLL},
-#endif
-#if HK_DESIGN_PITCH
-    {"GYRO_BIAS_PITCH", HK_FILTER_BIAS_PITCH},
-    {"TILT_OFS_PITCH", HK_FILTER_OFFSET_PITCH},
-#endif
+    HK_FILTER_NAMES(HK_ROW)
 };
 
 static uint8_t which_at(uint8_t place)

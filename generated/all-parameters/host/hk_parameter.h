@@ -13,7 +13,8 @@
 
 /* Those that are not the filter's come first. */
 #define HK_OWN_PARAMETERS 2U
-#define HK_PARAMETERS     (HK_OWN_PARAMETERS + 1U + 2U * HK_DESIGN_AXES)
+#define HK_ONE_MORE(name, which) +1U
+#define HK_PARAMETERS     (HK_OWN_PARAMETERS HK_FILTER_NAMES(HK_ONE_MORE))
 #define HK_NAME_BYTES 16U /* of a name; one of full length has no zero behind it */
 #define HK_NO_PARAMETER 0xFFU
 
@@ -22,6 +23,13 @@ typedef struct {
     uint8_t system_id; /* for the next start */
     uint8_t calibrate_at_start;
 } hk_parameters_t;
+
+/* One bit for each parameter. */
+#if HK_PARAMETERS > 8U
+typedef uint16_t hk_parameter_bits_t;
+#else
+typedef uint8_t hk_parameter_bits_t;
+#endif
 
 /* Set all to what the design says. */
 void hk_parameters_init(hk_parameters_t *parameters);

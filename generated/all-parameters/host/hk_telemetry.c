@@ -62,6 +62,19 @@ static bool send_sample(hk_app_t *app)
     return HK_SEND(&app->link, TILT_SAMPLE, &message);
 }
 
+typedef char hk_plan_knows_state[HK_FILTER_STATE_WORDS == HK_TOLD_WORDS ? 1 : -1];
+
+#if HK_FILTER_STATE_WORDS
+static bool send_state(hk_app_t *app)
+{
+    mavlink_tilt_state_t message = {0};
+
+    message.sequence = app->latest.sequence;
+    (void)memcpy(message.words, app->latest.state, sizeof app->latest.state);
+    return HK_SEND(&app->link, TILT_STATE, &message);
+}
+#endif
+
 /* Roll stays, and pitch, whose sense is "nose down" here, changes its sign. Yaw is not known; 0 is
  * no claim. */
 static bool send_attitude(hk_app_t *app)
@@ -212,6 +225,10 @@ bool hk_telemetry_stream(hk_app_t *app, uint8_t which)
     switch (which) {
     case HK_STREAM_TILT_SAMPLE:
         return send_sample(app);
+#if HK_FILTER_STATE_WORDS
+    case HK_STREAM_TILT_STATE:
+        return send_state(app);
+#endif
     case HK_STREAM_ATTITUDE:
         return send_attitude(app);
     case HK_STREAM_SCALED_IMU:

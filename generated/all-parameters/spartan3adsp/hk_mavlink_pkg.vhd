@@ -53,10 +53,7 @@ package hk_mavlink_pkg is
   constant flag_saturated_c : natural range 0 to 7 := 1;
   constant flag_retuned_c : natural range 0 to 7 := 2;
 
-  -- The biases that are hidden state, and which word of it each is.
-  constant hides_bias_roll_c  : boolean := true;
-  constant hides_bias_pitch_c : boolean := true;
-  constant bias_roll_word_c   : natural := 0;
-  constant bias_pitch_word_c  : natural := 1;
+  -- Enough to number the bytes of the longest frame.
+  constant place_bits_c : positive := 6;
 
 end package hk_mavlink_pkg;

@@ -137,6 +137,9 @@ static void take_sample(hk_app_t *app)
     hk_hal_mark_begin();
     restarted = hk_filter_update(&app->filter, sample->accel, sample->gyro);
     hk_hal_mark_end();
+#if HK_FILTER_STATE_WORDS
+    hk_filter_state(&app->filter, latest->state);
+#endif
     latest->time_us = full_time_us(app, sample->time_us);
     latest->sequence = app->samples++;
     latest->flags = flags_of(app, sample, restarted);

@@ -14,28 +14,73 @@
 #define HK_QUIET_US UINT32_C(3000000)
 #define HK_LIST_US  UINT32_C(20000)
 
-#define HK_VALUE_BYTES ((uint8_t)MAVLINK_MSG_ID_PARAM_VALUE_LEN)
+/* A PARAM_VALUE, and its frame. */
+#define HK_VALUE_BYTES 25U
+#define HK_VALUE_FRAME (HK_VALUE_BYTES + HK_FRAME_OVERHEAD)
+typedef char hk_value_has_that_length[HK_VALUE_BYTES == MAVLINK_MSG_ID_PARAM_VALUE_LEN ? 1 : -1];
 
-#define HK_ALL_PARAMETERS ((uint8_t)((1U << HK_PARAMETERS) - 1U))
-typedef char hk_parameters_fit_mask[HK_PARAMETERS <= 8U ? 1 : -1];
-typedef char hk_changes_can_be_told_at_once
-    [(HK_PARAMETERS - HK_OWN_PARAMETERS) * (HK_VALUE_BYTES + HK_FRAME_OVERHEAD) < 255U ? 1 : -1];
+#define HK_ALL_PARAMETERS ((hk_parameter_bits_t)((UINT32_C(1) << HK_PARAMETERS) - 1U))
+typedef char hk_parameters_fit_mask[HK_PARAMETERS <= 16U ? 1 : -1];
+
+/* Whether the queue of a board, of 255 bytes, does not take the values of all changes. Then some are
+ * told, and put to use, before the others. */
+#define HK_TOLD_IN_PARTS ((HK_PARAMETERS - HK_OWN_PARAMETERS) * HK_VALUE_FRAME > 255U)
+
+/* Messages that tell of the sample that was made last, with its values. */
+#if HK_FILTER_STATE_WORDS
+#define HK_OF_SAMPLE ((1U << HK_STREAM_TILT_SAMPLE) | (1U << HK_STREAM_TILT_STATE))
+#else
+#define HK_OF_SAMPLE (1U << HK_STREAM_TILT_SAMPLE)
+#endif
+
+static bool is_announced(const hk_app_t *app, uint8_t place)
+{
+    return (app->announce & (1U << place)) != 0U;
+}
+
+#if HK_TOLD_IN_PARTS
+/* Go on with the old values of what has not been told yet. */
+static void leave_untold(const hk_app_t *app, hk_filter_settings_t *next)
+{
+    uint8_t which;
+
+    for (which = 0U; which < HK_FILTER_PARAMETERS; which++) {
+        const uint8_t place = hk_parameter_of_filter(which);
+
+        if (place != HK_NO_PARAMETER && is_announced(app, place)) {
+            (void)hk_filter_set(next, which, hk_filter_get(&app->filter.settings, which));
+        }
+    }
+}
+#endif
 
 static void take_over(hk_app_t *app)
 {
-#ifdef HK_BIAS_LIMIT
-    /* The filter follows the bias by itself, and takes a new one only to start from. */
-    const bool restart = memcmp(app->filter.settings.bias, app->parameters.filter.bias,
-                                sizeof app->parameters.filter.bias) != 0;
+#ifdef HK_FILTER_START_BIAS
+    bool restart;
+#endif
+#if HK_TOLD_IN_PARTS
+    hk_parameters_t told = app->parameters;
+    const hk_parameters_t *const next = &told;
+
+    leave_untold(app, &told.filter);
+#else
+    const hk_parameters_t *const next = &app->parameters;
 #endif
 
-    app->filter.settings = app->parameters.filter;
-#ifdef HK_BIAS_LIMIT
+#ifdef HK_FILTER_START_BIAS
+    /* The filter follows the bias by itself, and takes a new one only to start from. */
+    restart = memcmp(HK_FILTER_START_BIAS(&app->filter.settings),
+                     HK_FILTER_START_BIAS(&next->filter),
+                     sizeof HK_FILTER_START_BIAS(&next->filter)) != 0;
+#endif
+    app->filter.settings = next->filter;
+#ifdef HK_FILTER_START_BIAS
     if (restart) {
         hk_filter_init(&app->filter);
     }
 #endif
-    app->retuned = hk_parameters_retuned(&app->parameters);
+    app->retuned = hk_parameters_retuned(next);
 }
 
 #if HK_SIGNING
@@ -80,7 +125,7 @@ static void touch(hk_app_t *app)
 
 void hk_settings_tell(hk_app_t *app, uint8_t place)
 {
-    app->announce = (uint8_t)(app->announce | (1U << place));
+    app->announce = (hk_parameter_bits_t)(app->announce | (1U << place));
 }
 
 void hk_settings_set(hk_app_t *app, uint8_t place, float value)
@@ -125,28 +170,22 @@ void hk_settings_save(hk_app_t *app)
 
 bool hk_settings_calibrate(hk_app_t *app, const float gyro_count[3])
 {
-    static const uint8_t which[HK_ANGLES] = {HK_FILTER_BIAS_ROLL, HK_FILTER_BIAS_PITCH};
     hk_parameters_t found = app->parameters;
-    uint8_t axis;
+    uint8_t bias;
 
-    for (axis = 0U; axis < HK_ANGLES; axis++) {
-        const uint8_t place = hk_parameter_of_filter(which[axis]);
+    for (bias = 0U; bias < HK_FILTER_BIASES; bias++) {
+        const uint8_t place = hk_parameter_of_filter((uint8_t)(HK_FILTER_FIRST_BIAS + bias));
 
         if (place == HK_NO_PARAMETER) {
             continue;
         }
-        if (!hk_parameter_set(&found, place, hk_filter_rate_rad_s(axis, gyro_count))) {
+        if (!hk_parameter_set(&found, place, hk_filter_rate_rad_s(bias, gyro_count))) {
             return false;
         }
         hk_settings_tell(app, place);
     }
     app->parameters = found;
     return true;
-}
-
-static bool is_announced(const hk_app_t *app, uint8_t place)
-{
-    return (app->announce & (1U << place)) != 0U;
 }
 
 /* Those that the filter does not use, one after the other. Returns whether all have been told. */
@@ -159,33 +198,41 @@ static bool announce_own(hk_app_t *app)
             if (!hk_telemetry_parameter(app, place)) {
                 return false;
             }
-            app->announce = (uint8_t)(app->announce & ~(1U << place));
+            app->announce = (hk_parameter_bits_t)(app->announce & ~(1U << place));
         }
     }
     return true;
 }
 
-/* Tell all that has changed of the filter at once, and put it to use. */
+/* Tell at once what has changed of the filter, all that the queue of a board can take, and put it to
+ * use. */
 static void announce(hk_app_t *app)
 {
-    const bool sample_waits = (app->stream.due & (1U << HK_STREAM_TILT_SAMPLE)) != 0U;
+    const bool sample_waits = (app->stream.due & HK_OF_SAMPLE) != 0U;
+    hk_parameter_bits_t left = 0U;
     uint8_t needed = 0U;
     uint8_t place;
 
     for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
         if (is_announced(app, place)) {
-            needed = (uint8_t)(needed + (HK_VALUE_BYTES + HK_FRAME_OVERHEAD));
+#if HK_TOLD_IN_PARTS
+            if (needed > 255U - HK_VALUE_FRAME) {
+                left = (hk_parameter_bits_t)(left | (1U << place));
+                continue;
+            }
+#endif
+            needed = (uint8_t)(needed + HK_VALUE_FRAME);
         }
     }
     if (sample_waits || !hk_link_has_time(&app->link) || hk_hal_transmit_room() < needed) {
         return;
     }
     for (place = HK_OWN_PARAMETERS; place < HK_PARAMETERS; place++) {
-        if (is_announced(app, place)) {
+        if (is_announced(app, place) && (left & (1U << place)) == 0U) {
             (void)hk_telemetry_parameter(app, place);
         }
     }
-    app->announce = 0U;
+    app->announce = left;
     take_over(app);
 }
 
@@ -197,8 +244,7 @@ static void go_on_listing(hk_app_t *app)
     }
     if (app->list_place == HK_NO_PARAMETER
         || (uint32_t)app->now_us - app->listed_us < HK_LIST_US
-        || !hk_link_has_room(HK_VALUE_BYTES + HK_FRAME_OVERHEAD
-                             + MAVLINK_MSG_ID_TILT_SAMPLE_LEN)) {
+        || !hk_link_has_room(HK_VALUE_FRAME + MAVLINK_MSG_ID_TILT_SAMPLE_LEN)) {
         return;
     }
     (void)hk_telemetry_parameter(app, app->list_place);

@@ -73,6 +73,29 @@ static inline int32_t hk_scale_angle(int32_t angle, int32_t raw, unsigned frac)
 }
 #endif
 
+/* a * b / 2^32, rounded down. */
+#if HK_LONG_PRODUCT
+static inline int32_t hk_product(int32_t a, int32_t b)
+{
+    return (int32_t)(((int64_t)a * b) >> 32);
+}
+#else
+int32_t hk_product(int32_t a, int32_t b);
+#endif
+
+/* count * gain / 2^15, rounded down; 0 <= gain, and the result fits. */
+static inline int32_t hk_scale(int32_t gain, int16_t count)
+{
+#if HK_LONG_PRODUCT
+    return (int32_t)(((int64_t)gain * count) >> 15);
+#else
+    /* Of the 16 bits that the product of words leaves out, the first. */
+    const uint16_t low = (uint16_t)(1U * (uint16_t)gain * (uint16_t)count);
+
+    return hk_product(gain, (int32_t)((uint32_t)count << 16)) * 2 + (int32_t)(low >> 15);
+#endif
+}
+
 /* value / 2^bits, halves upwards; value + 2^(bits - 1) fits 32 bits, 1 <= bits <= 30. */
 static inline int32_t hk_shift_rounded(int32_t value, unsigned bits)
 {

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "hk_design.h"
+#include "hk_filter.h"
 #include "hk_mavlink.h"
 
 /* The messages that go out again and again, in order of importance. Those before HK_STREAM_TIMED
@@ -20,6 +21,9 @@ typedef struct {
     uint32_t next[HK_STREAMS];        /* samples that come before the next, or when it is due, us */
     uint16_t due;                     /* one bit for each that has not gone out yet */
     uint16_t lost;                    /* samples' messages that found no room; it wraps */
+#if HK_FILTER_STATE_WORDS
+    bool told; /* the TILT_SAMPLE of this sample has gone out */
+#endif
 } hk_stream_t;
 
 /* Set all to the plan. Those that go by the clock are due at once. */
@@ -33,7 +37,8 @@ uint8_t hk_stream_of(uint16_t message_id);
 bool hk_stream_set(hk_stream_t *stream, uint8_t which, uint32_t interval_us, uint32_t now_us);
 uint32_t hk_stream_default_us(uint8_t which);
 
-/* Ask for a message once. */
+/* Ask for a message once. A TILT_STATE brings the TILT_SAMPLE of the same sample with it, which goes
+ * out before unless it has already. */
 void hk_stream_request(hk_stream_t *stream, uint8_t which);
 
 /* A new sample is there: what is still due of the one before is lost or goes out with this one. */

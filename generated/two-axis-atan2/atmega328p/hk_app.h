@@ -20,6 +20,9 @@ typedef struct {
     uint64_t time_us;
     uint32_t sequence; /* samples before it */
     uint8_t flags;     /* HOSTKIT_SAMPLE_FLAG */
+#if HK_FILTER_STATE_WORDS
+    int32_t state[HK_FILTER_STATE_WORDS]; /* of the filter after it */
+#endif
 } hk_latest_t;
 
 /* How much of its time the processor is awake. */
@@ -74,7 +77,7 @@ typedef struct {
     uint32_t listed_us;    /* when the list of parameters went on last */
     uint32_t test_us;      /* when a self-test was asked for */
     uint32_t reboot_us;    /* when a reboot was asked for */
-    uint8_t announce;      /* one bit for each parameter whose value is to be told */
+    hk_parameter_bits_t announce; /* parameters whose values are to be told */
     uint8_t list_place;    /* the next one of the list; HK_NO_PARAMETER if nobody asks for it */
     uint8_t notices;       /* one bit for each that has not been told */
     uint8_t sensor_status; /* MAV_STATE, but for a calibration */

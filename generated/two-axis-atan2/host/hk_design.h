@@ -46,11 +46,6 @@
 #define HK_BODY_Z_SOURCE 2
 #define HK_BODY_Z_SIGN   1
 
-/* Axes that the design has. */
-#define HK_DESIGN_ROLL  1
-#define HK_DESIGN_PITCH 1
-#define HK_DESIGN_AXES  ((unsigned)(HK_DESIGN_ROLL + HK_DESIGN_PITCH))
-
 /* Who the device is at first. */
 #define HK_DEFAULT_SYSTEM_ID 1U
 #define HK_COMPONENT_ID      1U
@@ -72,6 +67,9 @@
     X(HIGHRES_IMU, UINT32_C(0), 75U) \
     X(SYS_STATUS, UINT32_C(1000000), 55U) \
     X(HEARTBEAT, UINT32_C(1000000), 21U)
+
+/* Words of the filter's state in TILT_STATE; 0 where that message is not sent. */
+#define HK_TOLD_WORDS 0
 
 /* How it works. */
 #define HK_FLOAT              0 /* the filter computes in float */

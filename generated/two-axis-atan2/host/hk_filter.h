@@ -44,15 +44,31 @@ enum {
     HK_FILTER_PARAMETERS
 };
 
+/* X(name, number) for each parameter that the design has, in the order of the link and the store. */
+#define HK_FILTER_NAMES(X) \
+    X(FILT_TAU, HK_FILTER_TAU) \
+    X(GYRO_BIAS_ROLL, HK_FILTER_BIAS_ROLL) \
+    X(TILT_OFS_ROLL, HK_FILTER_OFFSET_ROLL) \
+    X(GYRO_BIAS_PITCH, HK_FILTER_BIAS_PITCH) \
+    X(TILT_OFS_PITCH, HK_FILTER_OFFSET_PITCH)
+
+/* Biases of the gyroscope among them: how many, the number of the first one. */
+#define HK_FILTER_BIASES     2
+#define HK_FILTER_FIRST_BIAS HK_FILTER_BIAS_ROLL
+
 typedef struct {
     hk_filter_settings_t settings;
     int32_t angle[HK_ANGLES]; /* roll, pitch; an axis that the design does not have stays 0 */
     uint8_t primed;           /* 0 until the first sample has loaded the measured tilt */
 } hk_filter_t;
 
-/* The state beside the angles of the design's axes, to initialise an array of words with. */
+/* The state beside the angles of the design's axes, as TILT_SAMPLE tells it: to initialise an array of
+ * words with. */
 #define HK_FILTER_HIDDEN(filter) \
     { 0 }
+
+/* Words of the state that do not fit there, and are told by TILT_STATE. */
+#define HK_FILTER_STATE_WORDS 0
 
 /* The settings of the design. They must be there before hk_filter_init. */
 void hk_filter_defaults(hk_filter_settings_t *settings);
@@ -65,7 +81,8 @@ float hk_filter_get(const hk_filter_settings_t *settings, uint8_t which);
  * finite, out of range, or of an axis that the design does not have. */
 bool hk_filter_set(hk_filter_settings_t *settings, uint8_t which, float value);
 
-/* The rate of HK_ROLL or HK_PITCH before the bias is taken off; 0 for an axis without. */
+/* What a bias, counted from the first, is taken off: the rate of HK_ROLL or HK_PITCH; 0 for an axis
+ * without. */
 float hk_filter_rate_rad_s(uint8_t axis, const float gyro_count[3]);
 
 /* Reset the state; the settings stay. */

@@ -8,7 +8,7 @@
 #define MAVLINK_COMM_NUM_BUFFERS 1
 #define MAVLINK_NO_SIGN_PACKET
 #define MAVLINK_NO_SIGNATURE_CHECK
-#define MAVLINK_MAX_PAYLOAD_LEN 80
+#define MAVLINK_MAX_PAYLOAD_LEN 100
 
 /* The generated headers do not stand strict warnings. */
 #pragma GCC system_header

@@ -72,6 +72,9 @@ void hk_stream_init(hk_stream_t *stream, uint32_t now_us)
     }
     stream->due = 0U;
     stream->lost = 0U;
+#if HK_FILTER_STATE_WORDS
+    stream->told = false;
+#endif
 }
 
 uint8_t hk_stream_of(uint16_t message_id)
@@ -97,15 +100,32 @@ bool hk_stream_set(hk_stream_t *stream, uint8_t which, uint32_t interval_us, uin
     return true;
 }
 
+#if HK_FILTER_STATE_WORDS
+/* The state belongs to a sample, and tells nothing without it. */
+static void bring_sample(hk_stream_t *stream)
+{
+    if (!stream->told && (stream->due & (1U << HK_STREAM_TILT_STATE)) != 0U) {
+        stream->due |= (uint16_t)(1U << HK_STREAM_TILT_SAMPLE);
+    }
+}
+#endif
+
 void hk_stream_request(hk_stream_t *stream, uint8_t which)
 {
     stream->due |= (uint16_t)(1U << which);
+#if HK_FILTER_STATE_WORDS
+    bring_sample(stream);
+#endif
 }
 
 void hk_stream_sample(hk_stream_t *stream)
 {
     uint8_t which;
 
+#if HK_FILTER_STATE_WORDS
+    stream->told = false;
+    bring_sample(stream); /* for a state that found no room before */
+#endif
     for (which = 0U; which < HK_STREAM_TIMED; which++) {
         if (stream->interval_us[which] == 0U) {
             continue;
@@ -151,4 +171,7 @@ uint8_t hk_stream_next(const hk_stream_t *stream)
 void hk_stream_sent(hk_stream_t *stream, uint8_t which)
 {
     stream->due &= (uint16_t)~(1U << which);
+#if HK_FILTER_STATE_WORDS
+    stream->told = stream->told || which == HK_STREAM_TILT_SAMPLE;
+#endif
 }

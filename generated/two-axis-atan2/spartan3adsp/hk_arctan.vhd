@@ -16,17 +16,20 @@ use work.hk_common_pkg.all;
 use work.hk_design_pkg.all;
 
 entity hk_arctan is
+  generic (
+    SIZE_BITS : positive range 16 to 30 := 16  -- of y; x and the length have 30
+  );
   port (
     clk             : in  std_logic;
     rst             : in  std_logic;  -- synchronous, active high
     in_valid        : in  std_logic;
     in_ready        : out std_logic;
     x               : in  unsigned(29 downto 0);  -- size, with guard bits
-    y               : in  unsigned(15 downto 0);  -- size, without
+    y               : in  unsigned(SIZE_BITS - 1 downto 0);  -- size, without
     x_negative      : in  std_logic;
     y_negative      : in  std_logic;
     second          : in  std_logic;              -- the last three hold until out_valid
-    y_second        : in  unsigned(15 downto 0);
+    y_second        : in  unsigned(SIZE_BITS - 1 downto 0);
     second_negative : in  std_logic;
     zero            : in  signed(31 downto 0);    -- taken off the angle; holds until out_valid
     out_valid       : out std_logic;              -- for one clock: there is an angle
@@ -35,7 +38,7 @@ entity hk_arctan is
     stretch         : out signed(17 downto 0);    -- there with the angle, until a vector is taken
     turn            : out unsigned(turn_digits_c - 1 downto 0);  -- with it
     multiply        : out std_logic;
-    factor          : out signed(22 downto 0);
+    factor          : out signed(30 downto 0);
     coefficient     : out signed(17 downto 0);
     product         : in  signed(49 downto 0)
   );
@@ -43,7 +46,8 @@ end entity hk_arctan;
 
 architecture rtl of hk_arctan is
 
-  constant stretch_shift_c : positive := stretch_fraction_bits_c - guard_bits_c;
+  constant guard_c         : natural  := 30 - SIZE_BITS;  -- guard bits
+  constant stretch_shift_c : positive := stretch_fraction_bits_c - guard_c;
 
   type state_t is (
     idle,
@@ -99,26 +103,26 @@ begin
                       product)
   begin
     multiply    <= '0';
-    factor      <= signed(shift_left(resize(digits, 23), 16 - ratio_digits_c));
+    factor      <= signed(shift_left(resize(digits, 31), 16 - ratio_digits_c));
     coefficient <= slope_c;
     if state_r = dividing then
       if count_r(ratio_digits_c - 1) = '1' then
         multiply <= '1';
       elsif count_r(ratio_digits_c - 2) = '1' then
-        factor      <= signed(resize(y_second, 23));
+        factor      <= signed(resize(y_second, 31));
         coefficient <= to_signed(stretches_c(to_integer(turn_r)), 18);
         multiply    <= '1';
       elsif count_r(10) = '1' then
-        factor      <= signed(resize(along_r(30 downto 16), 23));
+        factor      <= signed(resize(along_r(30 downto 16), 31));
         coefficient <= signed(resize(unsigned(product(15 downto 0)), 18));
         multiply    <= '1';
       elsif count_r(8) = '1' then
-        factor      <= signed(resize(digits_r(7 downto 0), 23));
+        factor      <= signed(resize(digits_r(7 downto 0), 31));
         coefficient <= signed(resize(digits_r(7 downto 0), 18)) + 1;
         multiply    <= '1';
       end if;
     elsif state_r = turning and count_r(turn_digits_c - 1) = '1' then
-      factor      <= signed(resize(part_r, 23));
+      factor      <= signed(resize(part_r, 31));
       coefficient <= signed(resize(digits(turn_digits_c - 1 downto 0), 18));
       multiply    <= '1';
     end if;
@@ -133,7 +137,7 @@ begin
 
       if state_r = idle then
         if in_valid = '1' then
-          along_r     <= shift_left(resize(y, 31), guard_bits_c);
+          along_r     <= shift_left(resize(y, 31), guard_c);
           rest_r      <= resize(x, 32);
           behind_r    <= x_negative;
           below_r     <= y_negative;
@@ -142,7 +146,7 @@ begin
         end if;
 
       elsif state_r = loading then
-        along_r     <= shift_left(resize(y_second, 31), guard_bits_c)
+        along_r     <= shift_left(resize(y_second, 31), guard_c)
                        + unsigned(product(stretch_shift_c + 29 downto stretch_shift_c));
         rest_r      <= resize(along_r, 32);
         behind_r    <= '0';
@@ -191,7 +195,7 @@ begin
           quarters_r(1) <= (steep_r and below_r) or (behind_r and not steep_r);
           negate_r      <= steep_r xor behind_r xor below_r;
           nothing_r     <= '0';
-          if along_r(30 downto guard_bits_c) = 0 then
+          if along_r(30 downto guard_c) = 0 then
             nothing_r <= '1';
           end if;
           state_r <= idle;

@@ -23,6 +23,9 @@ package hk_common_pkg is
   -- Size of a count, up to 2**15.
   function size_of (count : signed(16 downto 0)) return unsigned;
 
+  -- Whether a count stands at the end of its range.
+  function at_end_of_range (count : signed(15 downto 0)) return boolean;
+
   -- Nearest count in -limit .. limit.
   function clamped (count : signed(16 downto 0); limit : natural) return signed;
 
@@ -70,6 +73,15 @@ package body hk_common_pkg is
     end if;
     return unsigned(size_v(15 downto 0));
   end function size_of;
+
+  function at_end_of_range (count : signed(15 downto 0)) return boolean is
+  begin
+    -- 32767, -32767 or -32768.
+    if count(15) = '0' then
+      return unsigned(count(14 downto 0)) = 32767;
+    end if;
+    return unsigned(count(14 downto 1)) = 0;
+  end function at_end_of_range;
 
   function clamped (count : signed(16 downto 0); limit : natural) return signed is
   begin

@@ -1,3 +1,4 @@
+-- made by hostkit 0.1.0 from design 00e52f7c2b01; do not edit; template link/hk_mavlink_tx.vhd.j2
 -- MAVLink 2 frames of samples and heartbeats, byte by byte. A frame is made of the inputs as they
 -- stand, so they must hold until ready says that they are sent.
 library ieee;
@@ -44,20 +45,22 @@ architecture rtl of hk_mavlink_tx is
   -- Places of the bytes of a frame: the payload from 1, the trailer, the header. Counting on leads
   -- from measuring the payload to the header, and from there to the payload again.
   constant payload_at_c  : natural := 1;
-  constant payload_end_c : natural := 51;
-  constant extra_at_c    : natural := 52;  -- goes into the checksum only
-  constant end_at_c      : natural := 54;  -- second byte of the checksum
-  constant magic_at_c    : natural := 55;
-  constant length_at_c   : natural := 56;
-  constant sequence_at_c : natural := 59;
-  constant system_at_c   : natural := 60;
-  constant sender_at_c   : natural := 61;
-  constant id_0_at_c     : natural := 62;
-  constant id_1_at_c     : natural := 63;
+  constant payload_end_c : natural := 2 ** place_bits_c - 13;
+  constant extra_at_c    : natural := payload_end_c + 1;  -- goes into the checksum only
+  constant end_at_c      : natural := payload_end_c + 3;  -- second byte of the checksum
+  constant magic_at_c    : natural := payload_end_c + 4;
+  constant length_at_c   : natural := payload_end_c + 5;
+  constant sequence_at_c : natural := payload_end_c + 8;
+  constant system_at_c   : natural := payload_end_c + 9;
+  constant sender_at_c   : natural := payload_end_c + 10;
+  constant id_0_at_c     : natural := payload_end_c + 11;
+  constant id_1_at_c     : natural := payload_end_c + 12;
   constant id_2_at_c     : natural := 0;
 
+  subtype place_t is unsigned(place_bits_c - 1 downto 0);
+
   -- A byte that is the same in every frame of its kind; those that are not named are zero.
-  function fixed (is_heartbeat : std_logic; place : unsigned(5 downto 0)) return hk_byte_t is
+  function fixed (is_heartbeat : std_logic; place : place_t) return hk_byte_t is
     variable byte_v : hk_byte_t;
   begin
     byte_v := x"00";
@@ -130,9 +133,9 @@ architecture rtl of hk_mavlink_tx is
   signal is_heartbeat_r : std_logic;
   signal is_measured_r  : std_logic;  -- before, the payload goes by only to find its length
   signal is_closing_r   : std_logic;  -- the checksum itself is being sent
-  signal place_r        : unsigned(5 downto 0);
+  signal place_r        : place_t;
   signal bit_r          : unsigned(2 downto 0);
-  signal length_r       : unsigned(5 downto 0);
+  signal length_r       : place_t;
   signal sequence_r     : std_logic_vector(7 downto 0);
   signal carry_r        : std_logic;
   signal varying        : hk_byte_t;
@@ -171,18 +174,6 @@ begin
       design_digest_c(47 - 8 * i downto 40 - 8 * i);
   end generate digest;
   payload(8 * sample_flags_at_c + 7 downto 8 * sample_flags_at_c) <= flags;
-  hidden_roll : if hides_bias_roll_c generate
-    payload(
-      8 * sample_hidden_at_c + 32 * bias_roll_word_c + 31 downto
-      8 * sample_hidden_at_c + 32 * bias_roll_word_c
-    ) <= std_logic_vector(bias_roll);
-  end generate hidden_roll;
-  hidden_pitch : if hides_bias_pitch_c generate
-    payload(
-      8 * sample_hidden_at_c + 32 * bias_pitch_word_c + 31 downto
-      8 * sample_hidden_at_c + 32 * bias_pitch_word_c
-    ) <= std_logic_vector(bias_pitch);
-  end generate hidden_pitch;
 
   process (restarted, saturated, retuned)
   begin
@@ -236,7 +227,7 @@ begin
   begin
     varying <= fixed(is_heartbeat_r, place_r);
     if place_r = length_at_c then
-      varying <= "00" & std_logic_vector(length_r);
+      varying <= std_logic_vector(resize(length_r, 8));
     elsif is_heartbeat_r = '1' and place_r = payload_at_c + heartbeat_system_status_at_c then
       varying <= std_logic_vector(system_status);
     end if;
@@ -260,9 +251,9 @@ begin
         -- By turns if both are waiting, so that neither starves.
         is_measured_r <= '0';
         is_closing_r  <= '0';
-        place_r       <= to_unsigned(payload_at_c - 1, 6);
+        place_r       <= to_unsigned(payload_at_c - 1, place_bits_c);
         bit_r         <= to_unsigned(6, 3);
-        length_r      <= to_unsigned(1, 6);
+        length_r      <= to_unsigned(1, place_bits_c);
         if heartbeat_valid = '1' and (is_heartbeat_r = '0' or sample_valid = '0') then
           is_heartbeat_r <= '1';
           state_r        <= shifting;
@@ -313,7 +304,7 @@ begin
           place_r <= place_r + 1;
           state_r <= shifting;
           if place_r = length_r then
-            place_r <= to_unsigned(extra_at_c, 6);
+            place_r <= to_unsigned(extra_at_c, place_bits_c);
           elsif place_r = end_at_c then
             state_r <= finished;
           end if;

@@ -66,7 +66,7 @@ architecture rtl of hk_polar_iterative is
   signal turn         : unsigned(turn_digits_c - 1 downto 0);
 
   signal arctan_multiply    : std_logic;
-  signal arctan_factor      : signed(22 downto 0);
+  signal arctan_factor      : signed(30 downto 0);
   signal arctan_coefficient : signed(17 downto 0);
   signal multiply_r         : std_logic;
   signal factor_r           : signed(31 downto 0);

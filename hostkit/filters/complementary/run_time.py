@@ -5,6 +5,7 @@ them. What it tells of an integer is the nearest such number, kept within the li
 it gives the same integer wherever the integer came from a number of 32 bits.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
@@ -21,12 +22,15 @@ from hostkit.filters.complementary.parameters import (
     settings,
 )
 from hostkit.filters.complementary.spec import ComplementarySpec
-from hostkit.filters.filter import DeviceParameter, KnownParameter
+from hostkit.filters.filter import DeviceParameter, KnownParameter, ParameterView
 from hostkit.records import AXES, Axis, FilterDesign, Parameter
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 LEAST_TAU_SAMPLES = 2.0**-20
 """Shortest time constant, in samples: its blend is 1 already, and its eta is still above 0."""
+
+BLEND_STEP_RELATIVE = 2.0**-16
+"""One step of the weight that a device makes of FILT_TAU: it has 18 bits, 17 of them in use."""
 
 RunTimeKind = Literal["tau", "gyro_bias", "tilt_offset"]
 AXES_OF_DEVICE: Final = AXES["both"]
@@ -149,17 +153,36 @@ def link_name(item: RunTimeParameter) -> str:
     return short if item.axis is None else f"{short}_{item.axis.upper()}"
 
 
+def tau_views(period_s: float) -> tuple[ParameterView, ...]:
+    """Return what says the same as a time constant: eta and the crossover frequency."""
+    return (
+        ParameterView(
+            name="eta", symbol="\N{GREEK SMALL LETTER ETA}", unit="", terms=(1, 0, 1, period_s)
+        ),
+        ParameterView(name="crossover_hz", symbol="", unit="Hz", terms=(0, 1, 2 * math.pi, 0)),
+    )
+
+
 def known_parameters() -> tuple[KnownParameter, ...]:
     """Return what is known of the parameters without a design."""
-    return tuple(
-        KnownParameter(
-            name=link_name(item),
-            unit=item.unit,
-            lowest=None if item.kind == "tau" else limits(item, 1.0)[0],
-            highest=None if item.kind == "tau" else limits(item, 1.0)[1],
-        )
-        for item in RUN_TIME
+    return tuple(_tau() if item.kind == "tau" else _known(item) for item in RUN_TIME)
+
+
+def _tau() -> KnownParameter:
+    item = RUN_TIME[0]
+    return KnownParameter(
+        name=link_name(item),
+        unit=item.unit,
+        symbol="\N{GREEK SMALL LETTER TAU}",
+        title="time constant",
+        views=tau_views,
+        relative_step=BLEND_STEP_RELATIVE,
     )
+
+
+def _known(item: RunTimeParameter) -> KnownParameter:
+    lowest, highest = limits(item, 1.0)
+    return KnownParameter(name=link_name(item), unit=item.unit, lowest=lowest, highest=highest)
 
 
 def device_parameters(design: FilterDesign) -> tuple[DeviceParameter, ...]:

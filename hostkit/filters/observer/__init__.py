@@ -2,6 +2,7 @@
 
 from hostkit.filters.filter import Filter, RunTime
 from hostkit.filters.observer.context import filter_context
+from hostkit.filters.observer.core import CORE
 from hostkit.filters.observer.facts import facts
 from hostkit.filters.observer.float_model import run_float
 from hostkit.filters.observer.integer_model import run_integer, step_integer
@@ -19,9 +20,9 @@ from hostkit.filters.observer.parameters import (
 from hostkit.filters.observer.response import response
 from hostkit.filters.observer.run_time import (
     RUN_TIME,
+    device_limits,
     device_parameters,
     known_parameters,
-    limits,
     told_by_device,
     with_told,
 )
@@ -41,11 +42,11 @@ __all__ = [
     "ParameterKind",
     "Settings",
     "default_parameters",
+    "device_limits",
     "device_parameters",
     "facts",
     "filter_context",
     "known_parameters",
-    "limits",
     "lower",
     "parameter",
     "parameters",
@@ -75,5 +76,6 @@ OBSERVER: Filter[ObserverSpec] = Filter(
     response=response,
     context=filter_context,
     setting_words=setting_words,
+    core=CORE,
     calibrated=take_sensor_terms,
 )

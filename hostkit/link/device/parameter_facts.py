@@ -1,28 +1,16 @@
 """What is known of a device's parameters without asking it: units, limits, the design's values."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from hostkit.filters.complementary import RUN_TIME, RunTimeParameter, limits, told_by_device
+from hostkit.filters import FILTERS
+from hostkit.filters.filter import DeviceParameter, KnownParameter, ParameterView, no_views
 from hostkit.records import FilterDesign
 
-_STEM: Final = {"gyro_bias": "GYRO_BIAS", "tilt_offset": "TILT_OFS"}
-
-TAU_NAME: Final = "FILT_TAU"
 HIGHEST_SYSTEM = 254
 FORBIDDEN_SYSTEM = 250
-
-
-def filter_parameter_name(item: RunTimeParameter) -> str:
-    """Return the name that a parameter of the filter has on the link."""
-    return TAU_NAME if item.axis is None else f"{_STEM[item.kind]}_{item.axis.upper()}"
-
-
-FILTER_NAMES: Final[dict[str, int]] = {
-    filter_parameter_name(item): place for place, item in enumerate(RUN_TIME)
-}
-"""Place in RUN_TIME of each name on the link."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +29,8 @@ class ParameterFacts:
         parameters that are not the filter's.
     whole
         Whether only whole numbers are taken.
+    symbol, title, views, relative_step
+        As in :class:`hostkit.filters.filter.KnownParameter`.
     """
 
     name: str
@@ -49,6 +39,10 @@ class ParameterFacts:
     highest: float | None
     design_value: float | None = None
     whole: bool = False
+    symbol: str = ""
+    title: str = ""
+    views: Callable[[float], tuple[ParameterView, ...]] = no_views
+    relative_step: float = 0.0
 
     def takes(self, value: float) -> bool:
         """Tell whether the device takes a value; where the limits are not known, it may."""
@@ -82,33 +76,54 @@ def parameter_facts(design: FilterDesign | None = None) -> dict[str, ParameterFa
     Parameters
     ----------
     design
-        What the device runs. Without it there are no values of a design, and no limits of
-        FILT_TAU, which depend on the sample rate.
+        What the device runs. Without it there are the parameters of all filters, no values of a
+        design, and no limits of what depends on the sample rate.
 
     Raises
     ------
     HostkitError
         If the design cannot be lowered.
     """
-    told = (None,) * len(RUN_TIME) if design is None else told_by_device(design)
     facts = {own.name: own for own in _OWN}
-    for item, value in zip(RUN_TIME, told, strict=True):
-        if design is None or item.of(design):
-            fact = _filter_facts(item, design, value)
-            facts[fact.name] = fact
+    if design is None:
+        for filter_ in FILTERS:
+            for known in filter_.run_time.known:
+                earlier = facts.get(known.name)
+                facts[known.name] = _known_facts(known, earlier)
+        return facts
+    run_time = FILTERS[design.filter].run_time
+    by_name = {known.name: known for known in run_time.known}
+    for parameter in run_time.parameters(design):
+        facts[parameter.name] = _filter_facts(parameter, by_name.get(parameter.name))
     return facts
 
 
-def _filter_facts(
-    item: RunTimeParameter, design: FilterDesign | None, value: float | None
-) -> ParameterFacts:
-    known = design is not None or item.kind != "tau"
-    period_s = 1.0 if design is None else design.period_s
-    lowest, highest = limits(item, period_s) if known else (None, None)
+def _known_facts(known: KnownParameter, earlier: ParameterFacts | None) -> ParameterFacts:
+    """Return what is known of a parameter; the limits only where all filters have the same."""
+    limits = known.lowest, known.highest
+    if earlier is not None and limits != (earlier.lowest, earlier.highest):
+        limits = None, None
     return ParameterFacts(
-        name=filter_parameter_name(item),
-        unit=item.unit,
-        lowest=lowest,
-        highest=highest,
-        design_value=value,
+        name=known.name,
+        unit=known.unit,
+        lowest=limits[0],
+        highest=limits[1],
+        symbol=known.symbol,
+        title=known.title,
+        views=known.views,
+        relative_step=known.relative_step,
+    )
+
+
+def _filter_facts(parameter: DeviceParameter, known: KnownParameter | None) -> ParameterFacts:
+    return ParameterFacts(
+        name=parameter.name,
+        unit=parameter.unit,
+        lowest=parameter.lowest,
+        highest=parameter.highest,
+        design_value=parameter.design_value,
+        symbol="" if known is None else known.symbol,
+        title="" if known is None else known.title,
+        views=no_views if known is None else known.views,
+        relative_step=0.0 if known is None else known.relative_step,
     )

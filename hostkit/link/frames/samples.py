@@ -54,13 +54,17 @@ def told_states(frames: Sequence["Frame"], hidden_words: int) -> tuple[ToldState
     A state has as many words as the message at most, whatever the filter has. What comes a second
     time is left out.
     """
-    found = [frame for frame in frames if frame.name == STATE and not frame.repeated]
+    behind, samples, found = [], 0, []
+    for frame in frames:
+        samples += frame.name == SAMPLE
+        if frame.name == STATE and not frame.repeated:
+            found.append(frame)
+            behind.append(samples)
     read = _payloads(found, _layout(STATE))
+    words = read["words"][:, :hidden_words].tolist()
     return tuple(
-        ToldState(sequence=sequence, words_raw=tuple(words))
-        for sequence, words in zip(
-            read["sequence"].tolist(), read["words"][:, :hidden_words].tolist(), strict=True
-        )
+        ToldState(sequence=sequence, words_raw=tuple(own), behind=place)
+        for sequence, own, place in zip(read["sequence"].tolist(), words, behind, strict=True)
     )
 
 

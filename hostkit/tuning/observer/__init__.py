@@ -8,7 +8,7 @@ from hostkit.recordings import Recording
 from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer.kernel import SOURCES, CompiledObserver
 from hostkit.tuning.observer.problem import ObserverProblem, track_of
-from hostkit.tuning.observer.space import RANGES, observer_space, tunable
+from hostkit.tuning.observer.space import RANGES, observer_space, parameter_key, tunable
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.tuner import AnyRecording, Tuner
 
@@ -58,6 +58,7 @@ def _in_memory(recording: AnyRecording) -> Recording:
 OBSERVER_TUNER = Tuner(
     name="observer",
     tunables=tuple(tunable(search) for search in RANGES),
+    key=parameter_key,
     free=FREE,
     default=default_parameters,
     task=observer_problem,

@@ -35,6 +35,7 @@ typedef struct {
     double start_gain;
     double clip_gain;
     double bias_limit;
+    double rest_rate_limit;
     double acceleration_limit;
     double correction_limit;
     double start_limit;
@@ -157,7 +158,7 @@ static inline mask rested(state *s, const lanes *p, const hk_terms *t, const dou
         mean = greater(mean, magnitude(s->rate_mean[i]));
     }
     quiet = (rate_apart <= p[REST_RATE]) & (force_apart <= p[REST_FORCE])
-            & (mean <= t->bias_limit);
+            & (mean <= t->rest_rate_limit);
     s->still = chosen(quiet, s->still + t->period_s, all(0));
     s->still = chosen(s->still > t->rest_s, all(t->rest_s), s->still);
     return s->still > t->rest_s - 0.5 * t->period_s;

@@ -98,7 +98,7 @@ class ObserverSpace:
         columns = {p.name: np.full(len(points), p.value) for p in self.held}
         for i, dimension in enumerate(self.dimensions):
             column = np.exp(points[:, i]) if dimension.is_log else points[:, i]
-            columns[_key(dimension.name, dimension.axis)] = column
+            columns[parameter_key(dimension.name, dimension.axis)] = column
         return columns
 
     def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
@@ -138,7 +138,8 @@ def observer_space(
     return ObserverSpace(dimensions=tuple(dimensions), held=_held(free, fixed))
 
 
-def _key(name: FreeName, axis: str | None) -> str:
+def parameter_key(name: FreeName, axis: str | None) -> str:
+    """Return the name in a design of a kind of parameter, of an axis where it has several."""
     kind = BY_NAME[name]
     return next(kind.key(a) for a in SENSOR_AXES if not kind.per_axis or a == axis)
 

@@ -18,10 +18,10 @@ import { Replay } from "./replay.js";
 import { Scrolling } from "./scrolling.js";
 import { Store } from "./store.js";
 import { Stream } from "./stream.js";
-import { Tau } from "./tau.js";
 import { startTheme } from "./theme.js";
 import { showHead, showInfo } from "./verdict.js";
 import { View } from "./view.js";
+import { Viewed } from "./viewed.js";
 
 const LATENCIES = 1000;
 
@@ -42,7 +42,7 @@ class Page {
     this.banner = new Banner();
     this.panels = {
       parameters: new Parameters(),
-      tau: new Tau(info.rate_hz),
+      viewed: new Viewed(),
       commands: new Commands(),
       recording: new Recording(),
       replay: new Replay(),
@@ -87,7 +87,7 @@ class Page {
     showMessages(snapshot);
     const settable = !snapshot.replay && !snapshot.ended && snapshot.port_state === "connected";
     this.panels.parameters.show(snapshot.parameters, settable);
-    this.panels.tau.show(snapshot.parameters, settable);
+    this.panels.viewed.show(snapshot.parameters, settable);
     this.panels.commands.show(snapshot);
     this.panels.recording.show(snapshot.recording);
     this.panels.replay.show(snapshot.replay);

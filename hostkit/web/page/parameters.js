@@ -4,7 +4,8 @@ import { post } from "./api.js";
 import { attempt, byId, element, text } from "./dom.js";
 import { figure, withUnit } from "./format.js";
 
-export const TAU = "FILT_TAU";
+/** Whether a parameter is shown with its views, in a place of its own. */
+export function hasViews(parameter) { return (parameter.views ?? []).length > 0; }
 
 /** Float32 values that stand for the same number. */
 export function same(a, b) {
@@ -81,7 +82,8 @@ export class Parameters {
   show(parameters, settable) {
     byId("revert").disabled = !settable;
     byId("retuned").hidden = !parameters.some(differs);
-    const listed = parameters.filter((parameter) => parameter.name !== TAU).slice(0, 256);
+    const viewed = parameters.find(hasViews);
+    const listed = parameters.filter((parameter) => parameter !== viewed).slice(0, 256);
     const names = new Set(listed.map((parameter) => parameter.name));
     for (const [name, row] of this.rows) {
       if (names.has(name)) continue;

@@ -1,7 +1,9 @@
 // The head of the page: port, device, design, epoch, and the verdict with its reasons.
 
 import { byId, element, text } from "./dom.js";
-import { clock, figure } from "./format.js";
+import { clock, figure, withUnit } from "./format.js";
+
+const FACTS = 2;
 
 const PORT_MARKS = { connected: "ok", lost: "bad", released: "warn", ended: "" };
 
@@ -10,9 +12,14 @@ export function showInfo(info) {
   byId("port-name").title = info.port;
   const node = byId("design-name");
   text(byId("design-digest"), info.design_digest);
-  text(node, `τ ${figure(info.tau_s, 3)} s · η ${figure(info.eta)} · ${figure(info.rate_hz)} Hz`);
-  node.title = `eta ${figure(info.eta, 6)}, crossover ${figure(info.crossover_hz, 3)} Hz, ` +
-    `hostkit ${info.hostkit_version}`;
+  const facts = info.facts.map((fact) => factSaid(fact, 4));
+  text(node, [...facts.slice(0, FACTS), `${figure(info.rate_hz)} Hz`].join(" · "));
+  const all = info.facts.map((fact) => factSaid(fact, 6));
+  node.title = [info.filter, ...all, `hostkit ${info.hostkit_version}`].join(", ");
+}
+
+function factSaid({ label, value, unit }, digits) {
+  return `${label} ${withUnit(figure(value, digits), unit)}`;
 }
 
 /** What the badge says: nothing is judged before a step could be checked. */

@@ -35,6 +35,7 @@ project set "Preferred Language" "VHDL"
 foreach source {
   ../hk_axi4lite.vhd
   ../hk_common_pkg.vhd
+  ../hk_complementary_design_pkg.vhd
   ../hk_complementary_entry.vhd
   ../hk_event_counters.vhd
   ../hk_i2c_pkg.vhd
