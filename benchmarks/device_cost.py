@@ -51,7 +51,7 @@ def cost_table(design: FilterDesign) -> Table:
         title=f"One update, mean, max: two axes, {design.tilt}, {design.rate_hz:g} Hz, {SAMPLES} "
         "samples of wild motion",
         columns=COLUMNS,
-        rows=tuple((one.title, *_costs(one, design)) for one in CONTENDERS),
+        rows=tuple((one.title, *costs_of(one, design)) for one in CONTENDERS),
         remarks=(
             "All floats are of 32 bits and computed by the compilers' libraries. Quaternions are "
             "not turned into angles within the update; counts are turned into floats.",
@@ -80,7 +80,8 @@ def wild_motion(design: FilterDesign) -> Stimulus:
     )
 
 
-def _costs(contender: Contender, design: FilterDesign) -> Iterator[str]:
+def costs_of(contender: Contender, design: FilterDesign) -> Iterator[str]:
+    """Return mean and most of an update on each board, as text."""
     for target, board in BOARDS.items():
         with tempfile.TemporaryDirectory() as text:
             folder = Path(text)

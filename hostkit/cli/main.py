@@ -25,6 +25,7 @@ COMMANDS = {
     "smooth": "Find the tilt of whole recordings, without lag.",
     "calibrate": "Measure what a sensor reads wrong and put it into a design.",
     "evaluate": "Score a design on recordings.",
+    "compare": "Hold filters against those of other packages.",
     "generate": "Render a design to C or VHDL.",
     "build": "Compile or analyse generated code.",
     "flash": "Load generated code into a board.",

@@ -9,15 +9,17 @@ from hostkit.tuning.tuner import Tunable, Tuner
 
 ALL = "all"
 FILTER_OPTION = "filter_name"
+AUTO_FILTER = "auto"
+"""The filter that the recordings call for; which parameters it has is not known before."""
 
 
 def parse_free(
     ctx: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[FreeName, ...]:
     """Read names of parameters, separated by commas, or ``all``; nothing leaves it open."""
-    tuner = _tuner(ctx)
     if text is None:
         return ()
+    tuner = _tuner(ctx)
     if text == ALL:
         return tuple(t.name for t in tuner.tunables)
     return tuple(_known(tuner, part.strip()).name for part in text.split(","))
@@ -38,7 +40,10 @@ def parse_ranges(
 
 
 def _tuner(ctx: click.Context) -> Tuner:
-    return TUNERS[ctx.params[FILTER_OPTION]]
+    name = ctx.params[FILTER_OPTION]
+    if name == AUTO_FILTER:
+        raise click.BadParameter(f"name the filter with --filter: {', '.join(TUNERS.names())}")
+    return TUNERS[name]
 
 
 def _fixed(tuner: Tuner, text: str) -> FixedParameter:
@@ -105,11 +110,11 @@ def described() -> str:
 FILTER = click.option(
     "--filter",
     FILTER_OPTION,
-    type=click.Choice(TUNERS.names()),
+    type=click.Choice((*TUNERS.names(), AUTO_FILTER)),
     default="complementary",
     show_default=True,
     is_eager=True,
-    help="Filter to tune.",
+    help="Filter to tune; auto is the one that the motion of the recordings calls for.",
 )
 FREE = click.option(
     "--free",

@@ -1,6 +1,5 @@
 """The subcommand ``tune``: from recordings to a design."""
 
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,16 +9,15 @@ from hostkit.cli.fleet import fleet_options
 from hostkit.cli.fleet import run as run_fleet
 from hostkit.cli.inputs import JSON, RECORDINGS_OR_NONE, read_for_tuning, say
 from hostkit.cli.output import emit_json
-from hostkit.cli.parameter_options import FILTER, FIX, FREE, RANGE
+from hostkit.cli.parameter_options import AUTO_FILTER, FILTER, FIX, FREE, RANGE
+from hostkit.cli.tune_filter import with_filter
 from hostkit.cli.tune_output import show, tuning_document
 from hostkit.design_file import load_design, save_design, with_acceptance_of
-from hostkit.diagnosis import diagnose, findings
 from hostkit.errors import DesignError
 from hostkit.fleet import FleetOptions, GroupBy, SensorWish
 from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS
 from hostkit.provenance import CalibrationRecord
-from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
 from hostkit.sensors import SENSORS
 from hostkit.tuning import AUTO, FixedParameter, FreeName, SearchRange, TuningOptions, sensor_config
@@ -30,8 +28,6 @@ from hostkit.tuning.search import ONE_PARAMETER
 PART = SENSORS["mpu6050"]
 
 DESIGN_FILE, FLEET_FOLDER = Path("design.json"), Path("designs")
-MOST_SHOWN = 3
-"""Recordings whose motion is called unfit one by one."""
 
 
 def parse_mounting(context: click.Context, option: click.Parameter, text: str) -> Mounting:
@@ -225,6 +221,8 @@ def tune(
     )
     if (fleet_folder is None) == (not recording_files):
         raise click.UsageError("name recordings, or a folder of devices with --fleet")
+    if fleet_folder is not None and filter_name == AUTO_FILTER:
+        raise click.UsageError("a fleet has one filter: name it with --filter")
     if fleet_folder is None:
         _tune_one(recording_files, output or DESIGN_FILE, options, wish, report_file, as_json)
     else:
@@ -255,7 +253,7 @@ def _tune_one(
     as_json: bool,
 ) -> None:
     recordings = tuple(read_for_tuning(path) for path in files)
-    _say_motion(recordings, options)
+    options = with_filter(recordings, options)
     sensor = sensor_config(
         recordings,
         recordings[0].rate_hz,
@@ -277,22 +275,3 @@ def _tune_one(
         from hostkit.report import write_tuning_report
 
         write_tuning_report(result, report_file)
-
-
-def _say_motion(recordings: tuple[Recording | LargeRecording, ...], options: TuningOptions) -> None:
-    """Say what the motion calls for, before anything is tuned."""
-    verdicts: Counter[str] = Counter()
-    unfit = []
-    for recording in recordings:
-        part = recording.head if isinstance(recording, LargeRecording) else recording
-        diagnosis = diagnose(part, axes=options.axes, mounting=options.mounting)
-        motion = next(f for f in findings(diagnosis) if f.topic == "motion")
-        verdicts[diagnosis.planarity.verdict or "cannot be judged"] += 1
-        if motion.level == "look":
-            unfit.append(f"{recording.name}: {motion.sentence} -> {motion.action}")
-    counts = ", ".join(f"{verdict} ({count})" for verdict, count in verdicts.items())
-    say(f"motion of {len(recordings)} recording(s): {counts}")
-    for line in unfit[:MOST_SHOWN]:
-        say(f"  {line}")
-    if len(unfit) > MOST_SHOWN:
-        say(f"  and {len(unfit) - MOST_SHOWN} more; hostkit diagnose shows them")

@@ -15,6 +15,7 @@ from hostkit.diagnosis.findings import findings
 from hostkit.diagnosis.force import PERCENTILES, VIBRATION_FROM_HZ, ForceLevel
 from hostkit.diagnosis.noise import SensorNoise
 from hostkit.diagnosis.planarity import Planarity
+from hostkit.diagnosis.recommendation import recommended_filter
 from hostkit.diagnosis.rest import Rest
 from hostkit.diagnosis.timing import Timing
 from hostkit.units import DEG_PER_RAD, STANDARD_GRAVITY_M_S2
@@ -43,6 +44,7 @@ def allan_document(diagnoses: tuple[tuple[Path, Diagnosis], ...]) -> dict[str, o
 
 def _recording(path: Path, diagnosis: Diagnosis) -> dict[str, object]:
     span = diagnosis.temperature_deg_c
+    recommended = recommended_filter(diagnosis)
     return {
         "path": str(path),
         "name": diagnosis.name,
@@ -62,6 +64,8 @@ def _recording(path: Path, diagnosis: Diagnosis) -> dict[str, object]:
         "temperature_deg_c": None if span is None else list(span),
         "force": _force(diagnosis.force),
         "motion": _motion(diagnosis.planarity),
+        "recommended_filter": recommended and recommended.filter,
+        "recommended_because": recommended and recommended.reason,
         "noise": _noise(diagnosis.noise),
     }
 

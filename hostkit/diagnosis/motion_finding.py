@@ -49,8 +49,8 @@ def _action(diagnosis: Diagnosis) -> str:
     share = planarity.turn_share[axis]
     is_roll = diagnosis.axes == "roll" and diagnosis.mounting.source[0] == axis
     if share < SINGLE_SHARE or planarity.turn_upright > LEAST_ACROSS or is_roll:
-        return "take a three-dimensional filter; no eta mends this"
+        return "tune with --filter observer, which is three-dimensional; no eta mends this"
     return (
         f"{100.0 * share:.0f} % of the turning is about sensor {'xyz'[axis]}: try --axes roll "
-        f"--mounting {ROLL_ABOUT[axis]}, else take a three-dimensional filter"
+        f"--mounting {ROLL_ABOUT[axis]}, else --filter observer, which is three-dimensional"
     )

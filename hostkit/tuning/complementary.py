@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hostkit.filters.complementary import BY_NAME
+from hostkit.filters.complementary import BY_NAME, parameters
 from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES
 from hostkit.tuning.dimension import FreeName
@@ -18,6 +18,8 @@ from hostkit.tuning.spool import spool
 from hostkit.tuning.tuner import AnyRecording, Tunable, Tuner
 
 FREE = ("tau",)
+USUAL_ETA = 0.98
+"""What most published code has; the paper's default."""
 
 
 def tuning_problem(
@@ -93,5 +95,6 @@ COMPLEMENTARY_TUNER = Tuner(
     tunables=tuple(_tunable(r.name) for r in RANGES),
     key=_key,
     free=FREE,
+    default=lambda: parameters(USUAL_ETA),
     task=tuning_problem,
 )

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hostkit.recordings import LargeRecording, Recording
+from hostkit.records import Parameter
 from hostkit.tuning.dimension import FreeName, SearchRange
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.task import Task
@@ -51,6 +52,8 @@ class Tuner:
         Name in a design of a kind of parameter, and of an axis where it has several.
     free
         What is searched if nothing is said.
+    default
+        The parameters of a design that was not tuned.
     task
         Lays recordings of one rate out for the search; large ones in the folder.
     """
@@ -59,6 +62,7 @@ class Tuner:
     tunables: tuple[Tunable, ...]
     key: Callable[[FreeName, str | None], str]
     free: tuple[FreeName, ...]
+    default: Callable[[], tuple[Parameter, ...]]
     task: Callable[[tuple[AnyRecording, ...], TuningOptions, Path], Task]
 
     def tunable(self, name: FreeName) -> Tunable | None:

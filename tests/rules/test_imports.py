@@ -11,7 +11,7 @@ FLOORS = (
     ("web",),
     ("report",),
     ("monitor", "importers"),
-    ("validation", "flashing"),
+    ("validation", "flashing", "comparison"),
     ("synthesis",),
     ("emulation",),
     ("link",),

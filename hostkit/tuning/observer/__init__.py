@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from hostkit.errors import HostkitError
+from hostkit.filters.observer.parameters import default_parameters
 from hostkit.recordings import Recording
 from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer.kernel import SOURCES, CompiledObserver
@@ -59,5 +60,6 @@ OBSERVER_TUNER = Tuner(
     tunables=tuple(tunable(search) for search in RANGES),
     key=parameter_key,
     free=FREE,
+    default=default_parameters,
     task=observer_problem,
 )
