@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.filters import FILTERS
-from hostkit.records import AngleTrace, FilterDesign, ToldState
+from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
+from hostkit.trace import AngleTrace, ToldState
 from hostkit.validation.follower import Steps
 from hostkit.validation.retuning import AGREEING_STEPS, Model
 from hostkit.validation.told_states import ToldStates
