@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import TARGET_TOOLS, require_or_skip
+from boards import TARGET_TOOLS, changed, require_or_skip
 
 from hostkit.emulation.run import build, emulate
 from hostkit.filters.observer import OBSERVER, default_parameters, parameter, parameters
@@ -130,19 +130,22 @@ def test_every_target_agrees_bit_for_bit(
             assert result.states_told == math.ceil(len(recording) / design.rate_hz)
 
 
-@pytest.mark.parametrize("word", ["still", "gyro_bias_z"])
-def test_a_wrong_word_of_the_state_is_found(word: str, data_folder: Path, tmp_path: Path) -> None:
-    """The words that no angle shows soon are those that are told."""
+@pytest.mark.parametrize(
+    ("told", "instead"),
+    [
+        ("words[1] = filter->still;", "words[1] = filter->still + 1;"),
+        ("filter->accel_mean, 3U", "filter->gyro_mean, 3U"),
+    ],
+    ids=["still", "accel_mean"],
+)
+def test_a_wrong_word_of_the_state_is_found(
+    told: str, instead: str, data_folder: Path, tmp_path: Path
+) -> None:
+    """Words that no angle shows soon."""
     require_or_skip(*TARGET_TOOLS["host"])
     target, design = TARGETS["host"], design_for(data_folder, "of 100 Hz")
     write(generate(design, target), tmp_path)
-    source = tmp_path / "hk_filter.c"
-    text = source.read_text(encoding="ascii")
-    head, tail = text.split("void hk_filter_state(", 1)
-    place = [w.name for w in OBSERVER.lower(design).hidden].index(word)
-    end = tail.index("\n}")
-    changed = f"{tail[:end]}\n    words[{place}] ^= 1;{tail[end:]}"
-    source.write_text(f"{head}void hk_filter_state({changed}", encoding="ascii")
+    changed(tmp_path / "hk_filter.c", told, instead)
     build(tmp_path, target)
     recording = PIECES["of 100 Hz"][2].of(data_folder, 2.0)
     assert emulate(tmp_path, target, design, recording).mismatches == 2
