@@ -4,7 +4,7 @@ library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
-use work.hk_observer_program_pkg.all;
+use work.hk_observer_words_pkg.all;
 
 entity hk_memory is
   port (

@@ -70,7 +70,7 @@ architecture rtl of hk_observer is
   signal place       : unsigned(place_bits_c - 1 downto 0);
   signal done        : std_logic;
   signal input_index : std_logic_vector(5 downto 0);
-  signal input       : signed(31 downto 0);
+  signal input_word  : signed(31 downto 0);
   signal measure     : std_logic;
   signal result      : signed(31 downto 0);
 
@@ -165,21 +165,23 @@ begin
 
   -- Counts doubled, then the settings in their order.
   inputs : process (input_index, counts_r, settings)
+    variable count_v : signed(15 downto 0);
   begin
     if input_index(3) = '0' and input_index(2 downto 1) /= "11" then
-      input <= shift_left(resize(counts_r(to_integer(unsigned(input_index(2 downto 0)))), 32), 1);
+      count_v    := counts_r(to_integer(unsigned(input_index(2 downto 0))));
+      input_word <= shift_left(resize(count_v, 32), 1);
     elsif input_index(3 downto 0) = "0110" then
-      input <= settings.kt;
+      input_word <= settings.kt;
     elsif input_index(3 downto 0) = "0111" then
-      input <= settings.kv;
+      input_word <= settings.kv;
     elsif input_index(3 downto 0) = "1000" then
-      input <= settings.kb;
+      input_word <= settings.kb;
     elsif input_index(3 downto 0) = "1001" then
-      input <= settings.gyro_bias_x;
+      input_word <= settings.gyro_bias_x;
     elsif input_index(3 downto 0) = "1010" then
-      input <= settings.gyro_bias_y;
+      input_word <= settings.gyro_bias_y;
     else
-      input <= settings.gyro_bias_z;
+      input_word <= settings.gyro_bias_z;
     end if;
   end process inputs;
 
@@ -191,7 +193,7 @@ begin
       place       => place,
       done        => done,
       input_index => input_index,
-      input       => input,
+      input_word  => input_word,
       measure     => measure,
       result      => result,
       state_index => state_index,

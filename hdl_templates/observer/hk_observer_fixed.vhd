@@ -1,5 +1,5 @@
--- The observer with the settings of its design, for those who need none at run time: synthesis folds
--- the constants. Ports as those of hk_observer.
+-- The observer with the settings of its design, for those who need none at run time: synthesis
+-- folds the constants. Ports as those of hk_observer.
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;

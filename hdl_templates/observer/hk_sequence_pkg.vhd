@@ -3,8 +3,8 @@
 --   accumulator := [accumulator] +- floor(a * b / 2**32)      and, if wanted, into := accumulator
 --
 -- a and b are words of 32 bits. For a b from first_whole_c on it is 2**16 in place of 2**32; those
--- are constants with 16 fraction bits. From one_c on their fraction is 0: with them words are moved,
--- added and shifted to the left, in one clock instead of two.
+-- are constants with 16 fraction bits. From one_c on their fraction is 0: with them words are
+-- moved, added and shifted to the left, in one clock instead of two.
 -- A condition looks at the sign that the accumulator had at the last test.
 library ieee;
 use ieee.std_logic_1164.all;
@@ -55,7 +55,7 @@ package hk_sequence_pkg is
   -- The program as it stands in memory.
   constant place_bits_c : positive := 10;
   subtype code_t is std_logic_vector(31 downto 0);
-  type codes_t is array (2 ** place_bits_c - 1 downto 0) of code_t;
+  type codes_t is array (natural range 2 ** place_bits_c - 1 downto 0) of code_t;
   function assembled (program : program_t) return codes_t;
 
   -- A code in its fields.

@@ -20,7 +20,7 @@ entity hk_sequencer is
     place       : in  unsigned(place_bits_c - 1 downto 0);  -- of the first instruction
     done        : out std_logic;  -- for one clock: the last result is there
     input_index : out std_logic_vector(5 downto 0);
-    input       : in  signed(31 downto 0);  -- the word of that index, at once
+    input_word  : in  signed(31 downto 0);  -- the word of that index, at once
     measure     : out std_logic;  -- for one clock: result is one for the arc tangent
     result      : out signed(31 downto 0);
     state_index : in  unsigned(4 downto 0);  -- while no program runs
@@ -188,7 +188,7 @@ begin
 
       factor_r <= word_a;
       if input_r = '1' then
-        factor_r <= input;
+        factor_r <= input_word;
       end if;
       coefficient_r <= resize(word_b(31 downto 16), 18);
       if lowers_r(operands_c) = '1' then

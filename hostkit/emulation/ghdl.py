@@ -29,8 +29,8 @@ STANDARD = "--std=93c"
 OPTIMISE = "-O2"
 TOOL_TIMEOUT_S = 120.0
 RUN_TIMEOUT_S = 60.0
-SAMPLE_TIMEOUT_S = 0.1
-"""Added to the run's limit for every sample; GHDL takes about a millisecond."""
+SAMPLE_TIMEOUT_S = 0.5
+"""Added to the run's limit for every sample; GHDL takes 1 to 50 ms."""
 POLL_S = 0.1
 
 _UNIT = re.compile(r"^(?:entity|package) (\w+)$", re.MULTILINE)

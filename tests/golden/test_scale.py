@@ -19,7 +19,9 @@ def program(
     """Return the harness with the products of small processors, and with those of larger ones."""
     output = tmp_path_factory.mktemp("scale") / "scale"
     harness = Path(__file__).with_name("scale_main.c")
-    return host_cc.build(output, f"-DHK_LONG_PRODUCT={request.param}", f"-I{FIXED}", harness)
+    return host_cc.build(
+        output, f"-DHK_LONG_PRODUCT={request.param}", f"-I{FIXED}", harness, FIXED / "hk_fixed.c"
+    )
 
 
 def expected(cases: list[tuple[str, int, int, int]]) -> list[list[str]]:
@@ -61,3 +63,21 @@ def test_weight_of_nearly_one_is_scaled_exactly(host_cc, program: Path) -> None:
     values = [-(2**31), 2**31 - 1, -1, 0, 1, *rng.integers(-(2**31), 2**31, 60).tolist()]
     cases = [("a", value, 2**16, 16) for value in values]
     assert host_cc.run(program, cases) == expected(cases)
+
+
+def test_products_of_words_are_rounded_down(host_cc, program: Path) -> None:
+    rng = np.random.default_rng(5)
+    edges = [s * 2**k + d for k in (0, 8, 15, 16, 24, 30) for s in (1, -1) for d in (-1, 0, 1)]
+    words = [-(2**31), -(2**31) + 1, 2**31 - 1, *edges, *rng.integers(-(2**31), 2**31, 30).tolist()]
+    cases = [("p", a, b, 0) for a, b in itertools.product(words, words)]
+    wanted = [[str(a * b >> 32)] for _, a, b, _ in cases]
+    assert host_cc.run(program, cases) == wanted
+
+
+def test_a_gain_times_a_count_is_rounded_down(host_cc, program: Path) -> None:
+    rng = np.random.default_rng(6)
+    counts = [-32768, -32767, -1, 0, 1, 32767, *rng.integers(-32768, 32768, 30).tolist()]
+    gains = [0, 1, 2**15, 2**16 - 1, 2**31 - 1, *rng.integers(0, 2**31, 30).tolist()]
+    cases = [("g", count, gain, 0) for count, gain in itertools.product(counts, gains)]
+    wanted = [[str(count * gain >> 15)] for _, count, gain, _ in cases]
+    assert host_cc.run(program, cases) == wanted

@@ -13,7 +13,7 @@ model can leave its word of 32 bits, whatever the counts. What bounds them:
 
 import math
 
-from hostkit.errors import FormatError
+from hostkit.errors import DesignError, FormatError
 from hostkit.filters.arctan import arctan_table
 from hostkit.filters.observer.limits import (
     ACCELERATION_LIMIT_M_S2,
@@ -26,7 +26,7 @@ from hostkit.filters.observer.limits import (
     rest_samples,
     start_end,
 )
-from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
 from hostkit.filters.observer.settings import Settings, settings
 from hostkit.filters.observer.spec import (
     ObserverFormats,
@@ -42,6 +42,7 @@ from hostkit.sensors import SENSORS
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 WORD_MAX = 2**31 - 1
+COUNT_MAX = 2**15 - 1
 BIAS_BITS = 30.5
 ERROR_BOUND_RAD = math.radians(0.01)
 """Largest difference to the float model on recordings, measured; see the tests."""
@@ -91,7 +92,7 @@ def lower(design: FilterDesign) -> ObserverSpec:
         start_gain=_fixed(START_GAIN, 31) if aligns else 0,
         start_end=min(_fixed(start_end(own.start_s, period_s), 31), WORD_MAX),
         rest=_rest(design, own, formats),
-        clip_count=None if own.clip_rate_rad_s is None else math.floor(own.clip_rate_rad_s / rad_s),
+        clip_count=_clip_count(own, rad_s),
         lead_raw=_gain(design, "lead", 2.0 * own.lead_s / period_s, 25, 31),
     )
 
@@ -136,14 +137,13 @@ def _gains(design: FilterDesign, own: Settings, formats: ObserverFormats) -> Obs
     kt, kv, kb = gains_per_unit(period_s)
     cal = own.calibration
     biases = zip(cal.gyro_scale, cal.gyro_bias_rad_s, strict=True)
-    limit = _fixed(0.5 * BIAS_LIMIT_RAD_S * period_s, formats.bias)
     turns = _triple(tuple(b * bias_turn(s, period_s) for s, b in biases), formats.bias)
-    x, y, z = (min(max(raw, -limit), limit) for raw in turns)
+    _check_bias(own)
     return ObserverGains(
         kt_raw=_gain(design, "kt", own.kt_rad_m * kt, bits[0], 31),
         kv_raw=_gain(design, "kv", own.kv_per_s * kv, bits[1], 31),
         kb_raw=_gain(design, "kb", own.kb_per_s * kb, bits[2], 31),
-        bias_raw=(x, y, z),
+        bias_raw=turns,
     )
 
 
@@ -173,6 +173,25 @@ def _check_step(design: FilterDesign, own: Settings, full_scale_rad_s: float) ->
             f"observer's limit is {STEP_LIMIT_RAD}: sample at {least_hz:.0f} Hz or faster, or "
             "narrow the range"
         )
+
+
+def _clip_count(own: Settings, rad_s_per_count: float) -> int | None:
+    """Return the largest count that is not clipped; None where every count is one."""
+    if own.clip_rate_rad_s is None:
+        return None
+    count = math.floor(own.clip_rate_rad_s / rad_s_per_count)
+    return count if count < COUNT_MAX else None
+
+
+def _check_bias(own: Settings) -> None:
+    """Refuse a bias that the scale of its axis makes too large."""
+    cal = own.calibration
+    for axis, scale, bias in zip(SENSOR_AXES, cal.gyro_scale, cal.gyro_bias_rad_s, strict=True):
+        if (1.0 + scale) * abs(bias) > BIAS_LIMIT_RAD_S * (1.0 + 1e-9):
+            raise DesignError(
+                f"gyro_bias_{axis}_rad_s = {bias:g} rad/s is {(1.0 + scale) * bias:.4g} rad/s with "
+                f"gyro_scale_{axis} = {scale:g}; the limit is {BIAS_LIMIT_RAD_S:.4g} rad/s"
+            )
 
 
 def _gain(design: FilterDesign, name: str, value: float, bits: int, width: int) -> int:

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from hostkit.filters.factor import factor, float_of
 from hostkit.filters.filter import DeviceParameter, KnownParameter
 from hostkit.filters.observer.lowering import (
     bias_turn,
@@ -91,6 +92,10 @@ def limits(item: RunTimeParameter, design: FilterDesign) -> tuple[float, float]:
     if item.axis is None:
         fits = ROOM * 2.0**31 / per_unit(design)[RUN_TIME.index(item)]
         highest = min(highest, fits)
+    else:
+        scale = settings(design).calibration.gyro_scale[SENSOR_AXES.index(item.axis)]
+        highest = min(highest, highest / (1.0 + scale))
+        return _inwards(-highest, 0.0), _inwards(highest, 0.0)
     if item.name == "kv":
         highest = min(highest, ROOM * DECAY_LIMIT / design.period_s)
     return _inwards(kind.lowest, kind.highest), _inwards(highest, kind.lowest)
@@ -107,7 +112,7 @@ def told_by_device(design: FilterDesign) -> tuple[float, ...]:
     found = []
     for item, word, unit in zip(RUN_TIME, words(lower(design)), per_unit(design), strict=True):
         lowest, highest = limits(item, design)
-        found.append(min(max(float(np.float32(word / unit)), lowest), highest))
+        found.append(min(max(float_of(word, factor(1.0 / unit)), lowest), highest))
     return tuple(found)
 
 
