@@ -86,3 +86,19 @@ def inclination_rad(up_a: Vector, up_b: Vector) -> Vector:
     """
     sine = np.linalg.norm(np.cross(up_a, up_b), axis=-1)
     return np.asarray(np.arctan2(sine, np.sum(up_a * up_b, axis=-1)))
+
+
+def apart_rad(angle: Vector, other: Vector) -> Vector:
+    """Return how far angles are apart, shape ``(N,)``; the angle between the up directions of two.
+
+    Near a pitch of 90 deg roll says little: it is off by what the up direction is off, divided by
+    the cosine of the pitch.
+
+    Parameters
+    ----------
+    angle, other
+        One angle, or roll and pitch, rad, shape ``(N, A)``.
+    """
+    if angle.shape[1] == 1:
+        return np.abs(wrap_rad(angle - other))[:, 0]
+    return inclination_rad(up_from_tilt(*angle.T), up_from_tilt(*other.T))

@@ -22,6 +22,7 @@ COMMANDS = {
     "import": "Turn another format into a recording.",
     "diagnose": "Say what a recording shows of sensor and motion.",
     "tune": "Find the filter for recordings; write a design.",
+    "smooth": "Find the tilt of whole recordings, without lag.",
     "calibrate": "Measure what a sensor reads wrong and put it into a design.",
     "evaluate": "Score a design on recordings.",
     "generate": "Render a design to C or VHDL.",

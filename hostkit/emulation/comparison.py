@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import wrap_rad
+from hostkit.attitude import apart_rad, wrap_rad
 from hostkit.emulation.board import BoardRun
 from hostkit.emulation.fault import Fault
 from hostkit.emulation.fault_report import (
@@ -50,6 +50,9 @@ class EmulationResult:
         How many states were told beside the samples; None of a filter whose samples have it all.
     residual_rad
         Device minus float model, shape ``(samples, A)``.
+    max_abs_error_rad
+        How far the device is from the float model at most: the angle, or the up direction of two;
+        None if nothing came back.
     cycles_mean, cycles_max
         Cost of a filter update; None where nothing counts it.
     stack_bytes
@@ -71,6 +74,7 @@ class EmulationResult:
     missing: int
     mismatches: int
     residual_rad: Vector
+    max_abs_error_rad: float | None
     cycles_mean: float | None
     cycles_max: float | None
     stack_bytes: int | None
@@ -83,11 +87,6 @@ class EmulationResult:
     def __post_init__(self) -> None:
         """Make the array read-only."""
         read_only(self.residual_rad)
-
-    @property
-    def max_abs_error_rad(self) -> float | None:
-        """Largest residual, or None if nothing came back."""
-        return float(np.abs(self.residual_rad).max()) if self.residual_rad.size else None
 
     @property
     def passed(self) -> bool:
@@ -163,6 +162,7 @@ def compare(
         mismatches=int(wrong.sum()) + alone,
         states_told=len(answer.told) if spec.tells_state else None,
         residual_rad=residual,
+        max_abs_error_rad=_max_abs_error_rad(answer.state_raw, exact[row]),
         cycles_mean=answer.cycles_mean,
         cycles_max=answer.cycles_max,
         stack_bytes=answer.stack_bytes,
@@ -206,6 +206,7 @@ def compare_with_faults(
         mismatches=int(wrong.sum()) + alone,
         states_told=len(trace.told) if FILTERS[design.filter].lower(design).tells_state else None,
         residual_rad=residual,
+        max_abs_error_rad=_max_abs_error_rad(trace.state_raw, exact),
         cycles_mean=run.cycles_mean,
         cycles_max=run.cycles_max,
         stack_bytes=run.stack_bytes,
@@ -228,6 +229,11 @@ def compare_with_faults(
 def _residual_rad(state_raw: IntArray, exact: Vector) -> Vector:
     axes = exact.shape[1]
     return wrap_rad(state_raw[:, :axes] * RAD_PER_HALF_TURN_LSB - exact)
+
+
+def _max_abs_error_rad(state_raw: IntArray, exact: Vector) -> float | None:
+    angle = state_raw[:, : exact.shape[1]] * RAD_PER_HALF_TURN_LSB
+    return float(apart_rad(angle, exact).max()) if len(exact) else None
 
 
 def _state_wrong(

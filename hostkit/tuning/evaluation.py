@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import inclination_rad, up_from_tilt, wrap_rad
+from hostkit.attitude import apart_rad, inclination_rad, up_from_tilt, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters import FILTERS
 from hostkit.recordings import LargeRecording, Recording
@@ -44,7 +44,8 @@ class Evaluation:
         One for each axis of the design, and the inclination if it has both; empty without a
         reference.
     integer_vs_float_max_rad
-        Largest difference between integer and float model on the same counts.
+        Largest difference between integer and float model on the same counts: of the angle, or of
+        the up direction where the design has both angles.
     angle_rad
         Angles of the integer model, shape ``(N, A)``.
     reference_rad
@@ -99,7 +100,7 @@ def evaluate(design: FilterDesign, recording: Recording) -> Evaluation:
         samples=len(recording),
         scored_samples=int(scored.sum()),
         scores=() if reference is None else _scores(design, angle, reference, scored),
-        integer_vs_float_max_rad=float(np.abs(wrap_rad(angle - exact)).max()),
+        integer_vs_float_max_rad=float(apart_rad(angle, exact).max()),
         time_s=recording.time_s,
         angle_rad=angle,
         reference_rad=reference,

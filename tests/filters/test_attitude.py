@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from hostkit.attitude import (
+    apart_rad,
     inclination_rad,
     pitch_from_up,
     roll_from_up,
@@ -98,3 +99,11 @@ def test_wrap_and_inclination() -> None:
         for a, b in itertools.product((0, 1e-9), repeat=2)
     ]
     assert inclination_rad(ups[0], ups[1])[0] == pytest.approx(1e-9, rel=1e-6)
+
+
+def test_near_the_pole_roll_counts_by_what_it_turns() -> None:
+    angle = np.array([[0.5, 1.57], [0.5, 0.0]])
+    other = angle + np.array([[0.1, 0.0], [0.1, 0.0]])
+    found = apart_rad(angle, other)
+    np.testing.assert_allclose(found, [0.1 * np.cos(1.57), 0.1], rtol=2e-3)
+    np.testing.assert_allclose(apart_rad(angle[:, :1], other[:, :1] + 2 * np.pi), [0.1, 0.1])

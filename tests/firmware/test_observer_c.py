@@ -11,7 +11,7 @@ from hostkit.emulation.board import Stimulus
 from hostkit.emulation.run import board_of
 from hostkit.filters.observer import (
     RUN_TIME,
-    limits,
+    device_limits,
     lower,
     parameter,
     run_float,
@@ -130,7 +130,7 @@ def value_of(word: str) -> float:
 def trials(design: FilterDesign) -> list[list[float]]:
     """Values for each parameter: the ends, and any between them."""
     rng = np.random.default_rng(8)
-    ends = [limits(item, design) for item in RUN_TIME]
+    ends = [device_limits(item, design) for item in RUN_TIME]
     found = [[low for low, _ in ends], [high for _, high in ends]]
     for _ in range(60):
         row = [low + (high - low) * 10.0 ** rng.uniform(-6, 0) for low, high in ends]

@@ -18,7 +18,7 @@ FLOORS = (
     ("render",),
     ("dialect", "targets"),
     ("fleet", "reproduction"),
-    ("tuning", "calibration"),
+    ("tuning", "calibration", "smoothing"),
     ("filters",),
     ("optimisers",),
     ("diagnosis",),

@@ -20,9 +20,9 @@ from hostkit.filters.observer.parameters import (
 from hostkit.filters.observer.response import response
 from hostkit.filters.observer.run_time import (
     RUN_TIME,
+    device_limits,
     device_parameters,
     known_parameters,
-    limits,
     told_by_device,
     with_told,
 )
@@ -42,11 +42,11 @@ __all__ = [
     "ParameterKind",
     "Settings",
     "default_parameters",
+    "device_limits",
     "device_parameters",
     "facts",
     "filter_context",
     "known_parameters",
-    "limits",
     "lower",
     "parameter",
     "parameters",

@@ -9,7 +9,13 @@ from hostkit.filters.observer.integer_geometry import FIFTH, HALF_PER_G, SIXTH, 
 from hostkit.filters.observer.integer_model import CLIP_GAIN, START_LIMIT
 from hostkit.filters.observer.limits import FIRST_ROUNDS
 from hostkit.filters.observer.parameters import BY_NAME, SENSOR_AXES
-from hostkit.filters.observer.run_time import RUN_TIME, RunTimeParameter, limits, per_unit, words
+from hostkit.filters.observer.run_time import (
+    RUN_TIME,
+    RunTimeParameter,
+    device_limits,
+    per_unit,
+    words,
+)
 from hostkit.filters.observer.spec import ObserverFormats, ObserverSpec
 from hostkit.literals import float32_text
 from hostkit.records import FilterDesign
@@ -158,7 +164,7 @@ def _value(design: FilterDesign, item: RunTimeParameter) -> float:
 def _parameters(design: FilterDesign, spec: ObserverSpec) -> tuple[ParameterContext, ...]:
     found = []
     for item, raw, units in zip(RUN_TIME, words(spec), per_unit(design), strict=True):
-        lowest, highest = limits(item, design)
+        lowest, highest = device_limits(item, design)
         found.append(
             ParameterContext(
                 name=f"bias_{item.axis}" if item.axis else item.name,

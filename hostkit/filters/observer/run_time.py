@@ -85,7 +85,7 @@ def per_unit(design: FilterDesign) -> tuple[float, ...]:
     )
 
 
-def limits(item: RunTimeParameter, design: FilterDesign) -> tuple[float, float]:
+def device_limits(item: RunTimeParameter, design: FilterDesign) -> tuple[float, float]:
     """Return the lowest and the highest value that a device takes, numbers of 32 bits."""
     kind = BY_NAME[item.name]
     highest = kind.highest
@@ -111,7 +111,7 @@ def told_by_device(design: FilterDesign) -> tuple[float, ...]:
     """
     found = []
     for item, word, unit in zip(RUN_TIME, words(lower(design)), per_unit(design), strict=True):
-        lowest, highest = limits(item, design)
+        lowest, highest = device_limits(item, design)
         found.append(min(max(float_of(word, factor(1.0 / unit)), lowest), highest))
     return tuple(found)
 
@@ -142,8 +142,8 @@ def device_parameters(design: FilterDesign) -> tuple[DeviceParameter, ...]:
             name=item.link_name,
             unit=item.unit,
             design_value=value,
-            lowest=limits(item, design)[0],
-            highest=limits(item, design)[1],
+            lowest=device_limits(item, design)[0],
+            highest=device_limits(item, design)[1],
         )
         for item, value in zip(RUN_TIME, told_by_device(design), strict=True)
     )

@@ -32,7 +32,7 @@ Vector = NDArray[np.float64]
 RANGES: Final[tuple[SearchRange, ...]] = (
     SearchRange(name="kt", lowest=3e-3, highest=12.0, is_log=True),
     SearchRange(name="kv", lowest=0.05, highest=60.0, is_log=True),
-    SearchRange(name="kb", lowest=1e-5, highest=0.2, is_log=True),
+    SearchRange(name="kb", lowest=1e-5, highest=0.3, is_log=True),
     SearchRange(name="start", lowest=0.05, highest=10.0, is_log=True),
     SearchRange(name="rest_rate", lowest=3e-3, highest=0.1, is_log=True),
     SearchRange(name="rest_force", lowest=0.05, highest=3.0, is_log=True),
