@@ -1,4 +1,4 @@
-"""The observer on served boards under the real monitor: attached in mid-flight, tuned, disturbed."""
+"""The observer on served boards under the real monitor: met in mid-flight, tuned, disturbed."""
 
 import contextlib
 from collections.abc import Callable, Iterator
@@ -156,16 +156,22 @@ def watched(port: str) -> tuple[SessionResult, int]:
 
 def test_the_page_shows_the_observer_and_its_parameters(folder: Path) -> None:
     arguments = ["monitor", "design.json", "--port"]
+    with contextlib.ExitStack() as stack:
+        port = stack.enter_context(port_of(folder, "host", "sine-sweep"))
+        chromium = stack.enter_context(browser())
+        monitor = stack.enter_context(program(folder, *arguments, port, "--web", "--no-browser"))
+        with watched_page(chromium, monitor.see(r"http://\S+")) as page:
+            sees_facts_and_parameters(page)
+        assert monitor.end() == 0, monitor.said
+
+
+def sees_facts_and_parameters(page) -> None:
     labels = [fact.label for fact in OBSERVER.facts(DESIGN)]
-    with port_of(folder, "host", "sine-sweep") as port, browser() as chromium:
-        with program(folder, *arguments, port, "--web", "--no-browser") as monitor:
-            with watched_page(chromium, monitor.see(r"http://\S+")) as page:
-                design, body = page.locator("#design-name"), page.locator("body")
-                for label in labels[:2]:
-                    until(page, lambda x=label: f"{x} " in design.inner_text(), label)
-                title = design.get_attribute("title")
-                assert OBSERVER.title in title
-                assert all(f"{label} " in title for label in labels)
-                for known in OBSERVER.run_time.known:
-                    until(page, lambda x=known.name: x in body.inner_text(), known.name)
-            assert monitor.end() == 0, monitor.said
+    design, body = page.locator("#design-name"), page.locator("body")
+    for label in labels[:2]:
+        until(page, lambda x=label: f"{x} " in design.inner_text(), label)
+    title = design.get_attribute("title")
+    assert OBSERVER.title in title
+    assert all(f"{label} " in title for label in labels)
+    for known in OBSERVER.run_time.known:
+        until(page, lambda x=known.name: x in body.inner_text(), known.name)
