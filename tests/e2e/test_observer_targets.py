@@ -13,16 +13,21 @@ import pytest
 from boards import TARGET_TOOLS, changed, require_or_skip
 
 from hostkit.emulation.run import build, emulate
+from hostkit.errors import BuildError
 from hostkit.filters.observer import OBSERVER, default_parameters, parameter, parameters
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording, load
-from hostkit.records import FilterDesign, Parameter
-from hostkit.render import generate, write
+from hostkit.records import FilterDesign, Parameter, SensorConfig
+from hostkit.render import FirmwareOptions, generate, write
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import to_counts
+from hostkit.simulation import SensorErrors, simulate
 from hostkit.targets import TARGETS
 from hostkit.tuning import sensor_config
 
+SENSOR = SensorConfig(
+    part="mpu6050", gyro_full_scale_deg_s=1000, accel_full_scale_g=4, low_pass_setting=1
+)
 MOST_DEG = 0.01
 BOARD_S, FPGA_S = 5.0, 4.0
 """Seconds of a piece that are played; the simulated core takes three times as long."""
@@ -128,6 +133,50 @@ def test_every_target_agrees_bit_for_bit(
         assert math.degrees(result.max_abs_error_rad or math.inf) < MOST_DEG, recording.name
         if target.kind == "mcu":  # a core shows all words of each sample
             assert result.states_told == math.ceil(len(recording) / design.rate_hz)
+
+
+def simulated_design() -> FilterDesign:
+    return FilterDesign(
+        filter="observer",
+        axes="both",
+        tilt="atan2",
+        mounting=Mounting(),
+        rate_hz=250.0,
+        sensor=SENSOR,
+        parameters=default_parameters(),
+    )
+
+
+def test_the_small_board_loses_none_of_250_samples_a_second(tmp_path: Path) -> None:
+    """Each of them goes out over the link."""
+    require_or_skip(*TARGET_TOOLS["atmega328p"])
+    target = TARGETS["atmega328p"]
+    recording = simulate(
+        "free",
+        duration_s=2.0,
+        rate_hz=250.0,
+        sensor=SENSOR,
+        errors=SensorErrors(),
+        rng=np.random.default_rng(1),
+    )
+    design = simulated_design()
+    write(generate(design, target), tmp_path)
+    build(tmp_path, target)
+    result = emulate(tmp_path, target, design, recording)
+    assert (result.samples, result.missing, result.mismatches) == (500, 0, 0)
+    assert result.faults == ()
+    assert result.cycles_max is not None
+    assert result.cycles_max < 20_000
+
+
+def test_what_does_not_fit_the_small_board_is_refused_with_what_does(tmp_path: Path) -> None:
+    require_or_skip(*TARGET_TOOLS["atmega328p"])
+    target = TARGETS["atmega328p"]
+    options = FirmwareOptions(signing=True)
+    write(generate(simulated_design(), target, options), tmp_path)
+    what = r"atmega328p has 32256 .* fits: no --signing, or --target rp2040"
+    with pytest.raises(BuildError, match=what):
+        build(tmp_path, target)
 
 
 @pytest.mark.parametrize(
