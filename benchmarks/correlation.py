@@ -10,8 +10,8 @@ from benchmarks.problems import problem, repeated, steps, stream_of
 from benchmarks.table import Table, figure
 from benchmarks.timing import least_seconds
 from hostkit.optimisers import OPTIMISERS, SwarmResult
-from hostkit.tuning.correlation import TabulatedProblem, lags_of, tabulate, tabulated
-from hostkit.tuning.problem import Problem
+from hostkit.tuning.complementary.correlation import TabulatedProblem, lags_of, tabulate, tabulated
+from hostkit.tuning.complementary.problem import Problem
 
 LENGTHS = (10_000, 100_000, 1_000_000)
 RATE_HZ = 100.0

@@ -9,8 +9,8 @@ from scipy.optimize import minimize_scalar
 
 from benchmarks.compiled import LANES, best_loop
 from benchmarks.problems import stream_of
-from hostkit.tuning.problem import Problem
-from hostkit.tuning.space import RANGE_BY_NAME
+from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.space import RANGE_BY_NAME
 
 Vector = NDArray[np.float64]
 

@@ -11,11 +11,11 @@ from hostkit.recordings import Recording
 from hostkit.records import Objective, SensorConfig
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.tuning import FreeName
+from hostkit.tuning.complementary.objective import Layout, prepare
+from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.space import search_space
 from hostkit.tuning.kernel import ErrorStream, Kernel, kernel
 from hostkit.tuning.kernel.arrays import COLUMNS
-from hostkit.tuning.objective import Layout, prepare
-from hostkit.tuning.problem import Problem
-from hostkit.tuning.space import search_space
 
 SENSOR = SensorConfig(
     part="mpu6050", gyro_full_scale_deg_s=500, accel_full_scale_g=4, low_pass_setting=3

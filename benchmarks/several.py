@@ -11,7 +11,7 @@ from benchmarks.problems import SIX, problem
 from benchmarks.table import MISSING, Table, figure
 from benchmarks.timing import seconds
 from hostkit.optimisers import OPTIMISERS
-from hostkit.tuning.problem import Problem
+from hostkit.tuning.complementary.problem import Problem
 from hostkit.units import DEG_PER_RAD
 
 Vector = NDArray[np.float64]

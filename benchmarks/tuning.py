@@ -16,7 +16,7 @@ from hostkit import __version__
 from hostkit.optimisers import OPTIMISERS, SwarmResult
 from hostkit.records import OBJECTIVES, Objective
 from hostkit.tuning import TuningOptions
-from hostkit.tuning.problem import Problem
+from hostkit.tuning.complementary.problem import Problem
 from hostkit.tuning.search import search
 
 SAMPLES, RATE_HZ = 300, 20.0

@@ -7,11 +7,11 @@ from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
 from hostkit.records import AxisChoice, Objective, TiltMethod
 from hostkit.simulation import SensorErrors, simulate
+from hostkit.tuning.complementary.objective import Layout, prepare
+from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.space import search_space
 from hostkit.tuning.dimension import FixedParameter, FreeName
 from hostkit.tuning.kernel import Kernel, kernel
-from hostkit.tuning.objective import Layout, prepare
-from hostkit.tuning.problem import Problem
-from hostkit.tuning.space import search_space
 
 SENSOR = design(accel_full_scale_g=4).sensor
 EVERY: tuple[FreeName, ...] = (

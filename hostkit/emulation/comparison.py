@@ -19,10 +19,11 @@ from hostkit.emulation.fault_report import (
 )
 from hostkit.filters import FILTERS
 from hostkit.link.frames.decoder import Frame
-from hostkit.records import AXES, AngleTrace, FilterDesign, ToldState, read_only
+from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
 from hostkit.targets import Target
+from hostkit.trace import AngleTrace, ToldState
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 Vector = NDArray[np.float64]

@@ -8,7 +8,7 @@ from pathlib import Path
 from hostkit.errors import BuildError
 
 TIMEOUT_S = 300.0
-_ERROR = re.compile(r"\berror:|undefined reference|cannot find|will not fit|overflowed")
+_ERROR = re.compile(r"\berror:|undefined reference|cannot find|overflowed")
 
 
 def make(folder: Path, *variables: str) -> str:

@@ -33,11 +33,12 @@ from hostkit.emulation.comparison import (
 )
 from hostkit.emulation.fault import Fault, planned_faults
 from hostkit.emulation.fault_report import said
-from hostkit.errors import EmulationError, HostkitError
+from hostkit.emulation.image_room import overflow_bytes, require_room, too_large
+from hostkit.errors import BuildError, EmulationError, HostkitError
 from hostkit.filters import FILTERS
 from hostkit.link.frames.decoder import Decoder, Frame, trace_of
 from hostkit.recordings import Recording
-from hostkit.records import AXES, AngleTrace, FilterDesign
+from hostkit.records import AXES, FilterDesign
 from hostkit.render import FirmwareOptions, read_manifest
 from hostkit.render.choices import firmware_options_of
 from hostkit.render.link_plan import link_of
@@ -45,6 +46,7 @@ from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts
 from hostkit.sensors.mpu6050 import TEMPERATURE_COUNTS_PER_DEG_C, settle_samples
 from hostkit.targets import Target
+from hostkit.trace import AngleTrace
 
 __all__ = ["EmulationResult", "board_of", "build", "emulate", "stimulus_of"]
 
@@ -88,13 +90,26 @@ def build(folder: Path, target: Target) -> BuildResult | tuple[str, ...]:
     Raises
     ------
     BuildError
-        If the code does not compile.
+        If the code does not compile, or does not fit the target's flash.
     ToolMissingError
         If the toolchain is not installed.
     """
     if target.kind == "fpga":
         return ghdl.analyse(folder)
-    return board_of(target).build(folder)
+    try:
+        built = board_of(target).build(folder)
+    except BuildError as error:
+        excess_bytes = overflow_bytes(str(error))
+        if excess_bytes is None:
+            raise
+        excess_bytes += target.loader_bytes
+        raise too_large(target, _options_of(folder, target), excess_bytes) from error
+    require_room(target, _options_of(folder, target), built.flash_bytes)
+    return built
+
+
+def _options_of(folder: Path, target: Target) -> FirmwareOptions:
+    return firmware_options_of(target, read_manifest(folder).options)
 
 
 def board_of(target: Target) -> Board:
@@ -167,7 +182,7 @@ def emulate(
         if faults:
             raise EmulationError(f"{target.name} has no virtual sensor, so no faults of one")
         return compare(target, design, counts, _simulate(folder, design, counts, progress))
-    options = firmware_options_of(target, read_manifest(folder).options)
+    options = _options_of(folder, target)
     every = _every(design, target, options)
     tolerance_rad = FLOAT_TOLERANCE_RAD if options.arithmetic == "float" else None
     stimulus = stimulus_of(design, recording)

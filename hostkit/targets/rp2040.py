@@ -14,5 +14,6 @@ RP2040 = Target(
     folders=("common", "virtual_mpu6050", "rp2040"),
     clock_hz=125_000_000,
     baud=500_000,
+    flash_bytes=2040 << 10,
     uart=UartClock(tick_hz=4 * 125e6, least=64, most=65535 * 64, tolerance=0.01),
 )

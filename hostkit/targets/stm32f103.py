@@ -13,5 +13,6 @@ STM32F103 = Target(
     folders=("common", "virtual_mpu6050", "stm32f103"),
     clock_hz=72_000_000,
     baud=500_000,
+    flash_bytes=62 << 10,
     uart=UartClock(tick_hz=72e6, least=16, most=65535, tolerance=0.025),
 )

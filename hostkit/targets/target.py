@@ -26,6 +26,9 @@ class Target:
         Rate of the telemetry link if no other is asked for, bit/s.
     uart
         How the port of that link makes a rate; None where nothing is divided.
+    flash_bytes, loader_bytes
+        What a linker may fill of a microcontroller's flash, and how much of that a boot loader
+        takes; 0 where the firmware is a program like others.
     arduino
         Whether the Arduino IDE can build the code, so that it gets a sketch.
     boards
@@ -43,6 +46,8 @@ class Target:
     clock_hz: int = 0
     baud: int = 0
     uart: UartClock | FixedRates | None = None
+    flash_bytes: int = 0
+    loader_bytes: int = 0
     arduino: bool = False
     boards: tuple[Board, ...] = ()
     clock_maker: ClockMaker | None = None

@@ -14,7 +14,7 @@ from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES, FilterDesign, read_only
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import at_full_scale, to_counts, to_rate_and_force_g
-from hostkit.tuning.objective import reference_rad
+from hostkit.tuning.reference import reference_rad
 from hostkit.units import RAD_PER_HALF_TURN_LSB
 
 Vector = NDArray[np.float64]

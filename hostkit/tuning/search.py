@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from hostkit.errors import HostkitError
 from hostkit.optimisers import OPTIMISERS, SwarmResult, grid_brent, qpso
-from hostkit.tuning.correlation import TabulatedProblem, tabulated
+from hostkit.tuning.complementary.correlation import TabulatedProblem, tabulated
+from hostkit.tuning.complementary.problem import Problem
 from hostkit.tuning.kernel import ErrorStream, NativeKernel
 from hostkit.tuning.kernel.native import LineTask
 from hostkit.tuning.options import AUTO, TuningOptions
-from hostkit.tuning.problem import Problem
 from hostkit.tuning.task import Task
 
 Vector = NDArray[np.float64]

@@ -32,7 +32,7 @@ class Space(Protocol):
 
 
 class Task(Protocol):
-    """The cost of points over recordings: :class:`hostkit.tuning.problem.Problem` is one.
+    """The cost of points over recordings; each filter has a class of its own.
 
     Errors are of Q quantities: the angles of the axes, or the inclination alone.
     """

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.filters import FILTERS
-from hostkit.records import AngleTrace, FilterDesign
+from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
+from hostkit.trace import AngleTrace
 from hostkit.validation.retuning import Model
 
 Vector = NDArray[np.float64]

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.filters import FILTERS
-from hostkit.records import AngleTrace, FilterDesign, ToldState
+from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_rate_and_force_g
+from hostkit.trace import AngleTrace, ToldState
 from hostkit.validation.follower import Steps
 from hostkit.validation.retuning import AGREEING_STEPS, Model
 from hostkit.validation.told_states import ToldStates
@@ -47,6 +48,10 @@ class StateFollower:
     begins anew. Angles are compared with every sample, all words with every told state. A state
     that is wrong is taken up, too, so that what follows it is judged by itself.
 
+    The state of the float model is kept in units of the words. What one of them is worth may depend
+    on a parameter; when that is changed a device in integers keeps its words, and one in float,
+    which tells them in units of its design, what they are worth.
+
     Parameters
     ----------
     tolerance_rad
@@ -68,7 +73,7 @@ class StateFollower:
     def forget(self) -> None:
         """Know nothing of the device."""
         self._state: IntArray | None = None
-        self._float_state: Vector | None = None
+        self._float_words: Vector | None = None
         self._recent: deque[_Past] = deque(maxlen=RECENT)
         self._told = ToldStates()
         self._confirmed = 0
@@ -76,7 +81,7 @@ class StateFollower:
     @property
     def needs_state(self) -> bool:
         """Whether no sample can be computed before a state is told."""
-        return self._float_state is None
+        return self._float_words is None
 
     def device_rad(self, trace: AngleTrace) -> Vector:
         """Return the angles of the device, shape ``(N, A)``."""
@@ -135,7 +140,7 @@ class StateFollower:
             if anew[begin]:
                 self._break()
             states: list[IntArray | None] = [None] * (end - begin)
-            if trace.restarted[begin] or self._float_state is not None:
+            if trace.restarted[begin] or self._float_words is not None:
                 states = self._stretch(used, trace, slice(begin, end), si, steps)
             self._remember(used, trace, begin, states)
             words = told[end - 1]
@@ -155,8 +160,7 @@ class StateFollower:
     ) -> list[IntArray | None]:
         """Run both models through samples without a break; return the states behind them."""
         rate, force = si[0][which], si[1][which]
-        exact = self._filter.run_float(used.design, rate, force, self._float_state)
-        self._float_state = exact[-1]
+        exact = self._run_float(used, rate, force)
         steps.exact[which] = exact[:, : self._axes]
         steps.judged[which] = True
         if self._tolerance_rad is not None:
@@ -170,6 +174,16 @@ class StateFollower:
         steps.wrong[which] = (states[:, : self._axes] != angles).any(axis=1)
         return list(states)
 
+    def _run_float(self, used: Model, rate_rad_s: Vector, force_g: Vector) -> Vector:
+        """Run the float model on; return its states."""
+        per_unit = self._per_unit
+        if self._tolerance_rad is None:
+            per_unit = np.array(used.spec.state_per_unit)
+        start = None if self._float_words is None else self._float_words * per_unit
+        states = self._filter.run_float(used.design, rate_rad_s, force_g, start)
+        self._float_words = states[-1] / per_unit
+        return states
+
     def _differs(self, words: tuple[int, ...]) -> bool:
         """Compare a told state with that of the model, if there is one."""
         if self._state is None or self._tolerance_rad is not None:
@@ -180,18 +194,18 @@ class StateFollower:
 
     def _take_up(self, angles: IntArray, words: tuple[int, ...]) -> None:
         """Go on from what the device told, unless the model has just that or runs in float."""
-        if self._tolerance_rad is not None and self._float_state is not None:
+        if self._tolerance_rad is not None and self._float_words is not None:
             return
         state = np.array([*angles[: self._axes].tolist(), *words], dtype=np.int64)
         if self._state is None or (state != self._state).any():
-            self._float_state = state * self._per_unit
+            self._float_words = state.astype(np.float64)
         self._state = state
 
     def _compare_late(self, told: ToldState) -> bool:
         """Compare a state that came behind its sample; go on from it if it is news."""
         place = next(k for k, past in enumerate(self._recent) if past.sequence == told.sequence)
         past, *later = list(self._recent)[place:]
-        if self._tolerance_rad is not None and self._float_state is not None:
+        if self._tolerance_rad is not None and self._float_words is not None:
             return False
         now = self._state
         self._state = past.state
@@ -199,7 +213,7 @@ class StateFollower:
         if past.state is not None and not wrong:
             self._state = now
             return False
-        self._float_state = None
+        self._float_words = None
         self._take_up(past.angles, told.words_raw)
         for sample in later:
             self._catch_up(sample)
@@ -208,18 +222,17 @@ class StateFollower:
     def _catch_up(self, past: _Past) -> None:
         """Step both models through a sample that was passed before."""
         if past.model is None or self._state is None:
-            self._state = self._float_state = None
+            self._state = self._float_words = None
             return
         counts = Counts(accel=past.accel[None], gyro=past.gyro[None])
         si = to_rate_and_force_g(self._part, self._sensor, counts)
-        run = self._filter.run_float(past.model.design, *si, self._float_state)
-        self._float_state = run[-1]
+        self._run_float(past.model, *si)
         spec = past.model.spec
         self._state = self._filter.run_integer(spec, counts.accel, counts.gyro, self._state)[-1]
 
     def _break(self) -> None:
         """Take the next sample as one that does not follow."""
-        self._state = self._float_state = None
+        self._state = self._float_words = None
         self._recent.clear()
 
     def _remember(

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-from hostkit.records import ToldState
+from hostkit.trace import ToldState
 from hostkit.validation.order import COUNTER, WINDOW
 
 AHEAD = 64

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import wrap_rad
 from hostkit.errors import HostkitError
-from hostkit.records import AXES, AngleTrace, FilterDesign, ValidationReport
+from hostkit.records import AXES, FilterDesign, ValidationReport
+from hostkit.trace import AngleTrace
 from hostkit.validation.checks import checks
 from hostkit.validation.follower import Follower, Steps
 from hostkit.validation.histogram import Histogram

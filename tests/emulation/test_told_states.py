@@ -7,9 +7,9 @@ from long_state import SlowDevice, is_state, lower, register, run_float, run_int
 from hostkit.emulation.board import BoardRun
 from hostkit.emulation.comparison import Answer, compare, compare_with_faults
 from hostkit.emulation.run import answer_of, heard_of
-from hostkit.records import ToldState
 from hostkit.sensors.counts import Counts
 from hostkit.targets import TARGETS
+from hostkit.trace import ToldState
 
 HOST, SAMPLES = TARGETS["host"], 200
 

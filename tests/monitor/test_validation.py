@@ -11,7 +11,7 @@ from judging import feed, judge
 from hostkit.errors import HostkitError
 from hostkit.filters import FILTERS
 from hostkit.link.frames.decoder import Decoder
-from hostkit.records import AngleTrace
+from hostkit.trace import AngleTrace
 from hostkit.validation import Thresholds, Validator, device_parameters
 
 SAMPLES = 400

@@ -27,6 +27,7 @@ FLOORS = (
     ("recordings",),
     ("attitude",),
     ("design_file",),
+    ("trace",),
     (
         "records",
         "spec",

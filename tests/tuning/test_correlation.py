@@ -3,7 +3,7 @@ import pytest
 from recorded import problem, recorded
 
 from hostkit.tuning import TuningOptions
-from hostkit.tuning.correlation import _pays, lags_of, tabulate, tabulated
+from hostkit.tuning.complementary.correlation import _pays, lags_of, tabulate, tabulated
 from hostkit.tuning.search import search
 
 ENOUGH = 10**9
@@ -15,7 +15,7 @@ def long():
 
 
 def test_tables_give_the_rmse_of_the_kernel(long):
-    import hostkit.tuning.correlation as correlation
+    import hostkit.tuning.complementary.correlation as correlation
 
     tables = correlation.TabulatedProblem(
         problem=long,
@@ -26,7 +26,7 @@ def test_tables_give_the_rmse_of_the_kernel(long):
 
 
 def test_tables_hold_for_the_plain_rmse_of_all_samples_only(long, monkeypatch):
-    monkeypatch.setattr("hostkit.tuning.correlation.KERNEL_NS", 1e9)
+    monkeypatch.setattr("hostkit.tuning.complementary.correlation.KERNEL_NS", 1e9)
     assert tabulated(long, ENOUGH) is not None
     recording = recorded()
     assert tabulated(problem(recording, objective="mae"), ENOUGH) is None
@@ -48,7 +48,7 @@ def test_search_with_tables_finds_the_same(monkeypatch):
     p = problem(recorded(duration_s=20.0))
     options = TuningOptions(axes="roll", optimiser="qpso", restarts=2)
     kernel = search(p, options, "qpso")
-    monkeypatch.setattr("hostkit.tuning.correlation.KERNEL_NS", 1e9)
+    monkeypatch.setattr("hostkit.tuning.complementary.correlation.KERNEL_NS", 1e9)
     tables = search(p, options, "qpso")
     assert tables.cost == pytest.approx(kernel.cost, rel=1e-9)
     assert tables.x == pytest.approx(kernel.x, abs=1e-3)

@@ -6,8 +6,8 @@ from recorded import SENSOR, problem, recorded
 
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, TuningOptions, tune
+from hostkit.tuning.complementary.problem import Problem
 from hostkit.tuning.determination import profiles, remarks
-from hostkit.tuning.problem import Problem
 
 
 def said(p: Problem, x: np.ndarray) -> tuple[str, ...]:

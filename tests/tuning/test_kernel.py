@@ -13,6 +13,8 @@ from recorded import EVERY, problem, recorded
 from hostkit.optimisers import OPTIMISERS
 from hostkit.records import Objective
 from hostkit.tuning import SearchRange, TuningOptions
+from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.space import search_space
 from hostkit.tuning.kernel import (
     NativeKernel,
     PortableKernel,
@@ -21,9 +23,7 @@ from hostkit.tuning.kernel import (
     runs_of,
     within,
 )
-from hostkit.tuning.problem import Problem
 from hostkit.tuning.search import search
-from hostkit.tuning.space import search_space
 
 OBJECTIVES: list[Objective] = ["rmse", "mae"]
 

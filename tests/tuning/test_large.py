@@ -20,7 +20,7 @@ def small_parts(monkeypatch):
     """Treat a thousand samples as large, and read them in odd parts."""
     monkeypatch.setattr("hostkit.recordings.large.LARGE_SAMPLES", 1000)
     monkeypatch.setattr("hostkit.recordings.large.PART_SAMPLES", 333)
-    monkeypatch.setattr("hostkit.tuning.spool.PART_SAMPLES", 77)
+    monkeypatch.setattr("hostkit.tuning.complementary.spool.PART_SAMPLES", 77)
 
 
 @pytest.fixture

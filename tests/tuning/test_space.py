@@ -12,8 +12,8 @@ from hostkit.filters.complementary import run_float
 from hostkit.records import AXES
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, SearchRange, TuningOptions, evaluate, tune
-from hostkit.tuning.objective import reference_rad
-from hostkit.tuning.space import search_space
+from hostkit.tuning.complementary.space import search_space
+from hostkit.tuning.reference import reference_rad
 from hostkit.units import RAD_PER_DEG, STANDARD_GRAVITY_M_S2
 
 DEG = RAD_PER_DEG

@@ -13,7 +13,7 @@ from hostkit.recordings import Recording
 from hostkit.records import AXES
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.tuning import TuningOptions, evaluate, mean_rms_rad, sensor_config, tune
-from hostkit.tuning.objective import reference_rad
+from hostkit.tuning.reference import reference_rad
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from hostkit.dialect import python_module
 from hostkit.link.frames.framing import HEADER_BYTES
-from hostkit.records import AngleTrace, Axis, ToldState
+from hostkit.records import Axis
 from hostkit.spec import SAMPLE_HIDDEN_WORDS
+from hostkit.trace import AngleTrace, ToldState
 
 if TYPE_CHECKING:
     from hostkit.link.frames.decoder import Frame

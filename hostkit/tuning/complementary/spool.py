@@ -14,9 +14,9 @@ from hostkit.errors import HostkitError, RecordingError
 from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S
 from hostkit.recordings import LargeRecording
 from hostkit.records import AXES
+from hostkit.tuning.complementary.objective import Layout, lay_out
 from hostkit.tuning.kernel import ErrorStream, within
 from hostkit.tuning.kernel.arrays import COLUMNS, count, edges
-from hostkit.tuning.objective import Layout, lay_out
 
 PART_SAMPLES = 1 << 18
 """Samples of a part that is in memory."""

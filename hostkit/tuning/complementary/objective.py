@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from hostkit.attitude import pitch_from_up, roll_from_up, to_body, wrap_rad
+from hostkit.attitude import to_body, wrap_rad
 from hostkit.errors import RecordingError
 from hostkit.filters.complementary import RATE_AXIS, measured_tilt_rad
 from hostkit.filters.complementary.parameters import BIAS_LIMIT_RAD_S
@@ -30,6 +30,7 @@ from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
 from hostkit.records import AXES, Axis, AxisChoice, TiltMethod
 from hostkit.tuning.kernel import ErrorStream, runs_of
+from hostkit.tuning.reference import reference_rad
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -73,23 +74,6 @@ def _whole(recording: Recording, axis: Axis, layout: Layout) -> ErrorStream:
             f"{recording.name}: none of its {len(recording)} samples is valid with a reference"
         )
     return stream
-
-
-def reference_rad(recording: Recording, axis: Axis, mounting: Mounting) -> Vector:
-    """Return the reference angle of one axis, NaN where there is none, shape ``(N,)``.
-
-    Raises
-    ------
-    RecordingError
-        If the recording has no reference.
-    """
-    if recording.up_reference is None:
-        raise RecordingError(
-            f"{recording.name} has no reference: add ref_roll_rad and ref_pitch_rad, or ref_qw to "
-            "ref_qz, in a CSV file; ref_quat_wxyz or ref_tilt_rad in a .npz file"
-        )
-    up = to_body(mounting, recording.up_reference)
-    return roll_from_up(up) if axis == "roll" else pitch_from_up(up)
 
 
 def lay_out(

@@ -10,6 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from hostkit.attitude import inclination_rad, up_from_tilt
 from hostkit.records import Objective
+from hostkit.tuning.complementary.space import SearchSpace
 from hostkit.tuning.kernel import (
     Candidates,
     Carry,
@@ -19,7 +20,6 @@ from hostkit.tuning.kernel import (
     kernel,
     scored_mask,
 )
-from hostkit.tuning.space import SearchSpace
 
 Vector = NDArray[np.float64]
 

@@ -8,13 +8,13 @@ import numpy as np
 from hostkit.filters.complementary import BY_NAME, parameters
 from hostkit.recordings import LargeRecording, Recording
 from hostkit.records import AXES
+from hostkit.tuning.complementary.objective import Layout, prepare
+from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.space import RANGES, search_space
+from hostkit.tuning.complementary.spool import spool
 from hostkit.tuning.dimension import FreeName
 from hostkit.tuning.kernel import StreamSource
-from hostkit.tuning.objective import Layout, prepare
 from hostkit.tuning.options import TuningOptions
-from hostkit.tuning.problem import Problem
-from hostkit.tuning.space import RANGES, search_space
-from hostkit.tuning.spool import spool
 from hostkit.tuning.tuner import AnyRecording, Tunable, Tuner
 
 FREE = ("tau",)

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from hostkit.records import read_only
+from hostkit.tuning.complementary.problem import Problem
 from hostkit.tuning.kernel import ErrorStream
-from hostkit.tuning.problem import Problem
 
 Vector = NDArray[np.float64]
 
