@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from hostkit.errors import DesignError
 from hostkit.recordings import Recording
 from hostkit.records import FilterDesign, read_only
-from hostkit.tuning.observer.kernel import Track
-from hostkit.tuning.observer.problem import track_of
+from hostkit.tuning.track import Track, track_of
 
 Vector = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sens
 from hostkit.tuning.archive import ArchivedTask, archived
 from hostkit.tuning.dimension import Dimension
 from hostkit.tuning.evaluation import Evaluation
-from hostkit.tuning.objective import reference_rad
+from hostkit.tuning.reference import reference_rad
 from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
 from hostkit.tuning.search import choose_optimiser, search
 from hostkit.tuning.task import Space

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hostkit.comparison.peer import Peer
 from hostkit.records import Parameter
 from hostkit.tuning.dimension import Dimension
-from hostkit.tuning.observer.space import HOLD, RANGE_BY_NAME, USUAL
+from hostkit.tuning.sensor_terms import SENSOR_RANGES, preference
 
 Vector = NDArray[np.float64]
 
@@ -71,8 +71,8 @@ class PeerSpace:
 
     def preference(self, points: Vector) -> Vector:
         """Return the factors that hold scales near zero, as for hostkit's observer, ``(P,)``."""
-        scales = points[:, len(self.peer.parameters) :]
-        return np.asarray(1.0 + HOLD * ((scales / USUAL[SCALE]) ** 2).sum(axis=1))
+        own = len(self.peer.parameters)
+        return preference(self.dimensions[own:], points[:, own:])
 
     def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
         """Return a point as named parameters."""
@@ -87,5 +87,5 @@ class PeerSpace:
 
 
 def _scale(axis: str) -> Dimension:
-    search = RANGE_BY_NAME[SCALE]
+    search = next(r for r in SENSOR_RANGES if r.name == SCALE)
     return Dimension(name=SCALE, axis=axis, lower=search.lowest, upper=search.highest, is_log=False)

@@ -13,7 +13,7 @@ from hostkit.recordings import Recording
 from hostkit.records import Parameter
 from hostkit.smoothing import SmootherSettings, smooth
 from hostkit.tuning.evaluation import Quantity
-from hostkit.tuning.observer.problem import track_of
+from hostkit.tuning.track import track_of
 
 UNITS = {
     "rad_s_rthz": "rad/s/rtHz",

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from long_state import SlowDevice, is_state, lower, register, run_float, run_integer, slow_design
+from slow_filter import SlowDevice, is_state, lower, register, run_float, run_integer, slow_design
 
 from hostkit.emulation.board import BoardRun
 from hostkit.emulation.comparison import Answer, compare, compare_with_faults

@@ -55,7 +55,7 @@ MUTATIONS = (
     ),
     *table(
         "plain",
-        "hk_complementary_pkg.vhd",
+        "hk_common_pkg.vhd",
         (
             "-32767 is inside",
             "unsigned(count(14 downto 1)) = 0",

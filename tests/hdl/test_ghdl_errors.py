@@ -109,7 +109,7 @@ def test_results_are_read(folder: Path, fake_ghdl: Path) -> None:
         (RESULTS.rsplit("\n", 2)[0] + "\n", "1 results for 2 samples"),
         (RESULTS + RESULTS.splitlines()[1] + "\n", "3 results for 2 samples"),
         (RESULTS.replace("ffffffff", "XXXXXXXX"), "is not a result"),
-        (RESULTS.replace("00000007 ", ""), "is not a result"),
+        (RESULTS.replace("00000007 ", ""), "differ in their numbers of words"),
         (RESULTS.replace("fffffff9 1", "fffffff9 2"), "is not a result"),
         (RESULTS.replace("0003 ", ""), "is not a result"),
     ],

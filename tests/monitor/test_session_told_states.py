@@ -4,7 +4,7 @@ import math
 
 import pytest
 from fake_ports import FakeClock, FakeTransport
-from long_state import STATE_ID, SlowDevice, is_state, register, slow_design
+from slow_filter import STATE_ID, SlowDevice, is_state, register, slow_design
 
 from hostkit.dialect import python_module
 from hostkit.monitor import Session, SessionOptions, SessionResult

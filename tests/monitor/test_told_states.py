@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from judging import judge
-from long_state import SlowDevice, is_state, register, slow_design
+from slow_filter import SlowDevice, is_state, register, slow_design
 
 from hostkit.link.frames.decoder import Decoder, trace_of
 from hostkit.validation import Thresholds, Validator

@@ -7,9 +7,10 @@ from hostkit.filters.observer.parameters import default_parameters
 from hostkit.recordings import Recording
 from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer.kernel import SOURCES, CompiledObserver
-from hostkit.tuning.observer.problem import ObserverProblem, track_of
+from hostkit.tuning.observer.problem import ObserverProblem
 from hostkit.tuning.observer.space import RANGES, observer_space, parameter_key, tunable
 from hostkit.tuning.options import TuningOptions
+from hostkit.tuning.track import track_of
 from hostkit.tuning.tuner import AnyRecording, Tuner
 
 FREE = ("kt", "kv", "kb", "start", "rest_rate", "rest_force", "rest_gain", "gyro_scale")

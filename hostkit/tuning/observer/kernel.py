@@ -9,7 +9,6 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import inclination_rad, pitch_from_up, roll_from_up, to_body, wrap_rad
 from hostkit.filters.observer.limits import (
     ACCELERATION_LIMIT_M_S2,
     CLIP_GAIN,
@@ -25,9 +24,10 @@ from hostkit.filters.observer.limits import (
 )
 from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
 from hostkit.mounting import Mounting
-from hostkit.records import Objective, read_only
+from hostkit.records import Objective
 from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
+from hostkit.tuning.track import Track
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -40,40 +40,6 @@ QUANTITY_NUMBER: Final[dict[Quantity, int]] = {"inclination": 0, "roll": 1, "pit
 GAINS: Final = ("kt", "kv", "kb")
 NEVER: Final = -1.0
 """A threshold that nothing stays below: rest is not looked for."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Track:
-    """A recording as the kernel reads it, sensor axes.
-
-    Attributes
-    ----------
-    rate_rad_s, force_m_s2, reference
-        Angular rate, specific force, and reference direction of up, each of shape ``(N, 3)``.
-    scored
-        Samples that count, shape ``(N,)``.
-    """
-
-    rate_rad_s: Vector
-    force_m_s2: Vector
-    reference: Vector
-    scored: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for array in (self.rate_rad_s, self.force_m_s2, self.reference):
-            read_only(array)
-        read_only(self.scored)
-
-    def __len__(self) -> int:
-        return len(self.scored)
-
-    def deviation_rad(self, up: Vector, quantity: Quantity, mounting: Mounting) -> Vector:
-        """Return the error of directions of up, shape ``(N,)``: an angle's, or the inclination."""
-        if quantity == "inclination":
-            return inclination_rad(up, self.reference)
-        angle = roll_from_up if quantity == "roll" else pitch_from_up
-        return wrap_rad(angle(to_body(mounting, up)) - angle(to_body(mounting, self.reference)))
 
 
 class _Track(ctypes.Structure):

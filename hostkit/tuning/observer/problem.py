@@ -5,21 +5,19 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.attitude import up_from_tilt
-from hostkit.errors import RecordingError
 from hostkit.filters.observer.float_model import run_float
 from hostkit.mounting import Mounting
-from hostkit.recordings import Recording
 from hostkit.records import FilterDesign, Objective, SensorConfig
 from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
-from hostkit.tuning.observer.kernel import Kernel, Terms, Track, candidate_table
+from hostkit.tuning.observer.kernel import Kernel, Terms, candidate_table
 from hostkit.tuning.observer.space import ObserverSpace
+from hostkit.tuning.track import Track
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -180,33 +178,3 @@ class ObserverProblem:
         )
         angle = run_float(design, track.rate_rad_s, track.force_m_s2 / STANDARD_GRAVITY_M_S2)
         return up_from_tilt(angle[:, 0], angle[:, 1])
-
-
-def track_of(recording: Recording) -> Track:
-    """Lay out a recording.
-
-    Raises
-    ------
-    RecordingError
-        If the recording has no reference, or no sample of it can be scored.
-    """
-    if recording.up_reference is None:
-        raise RecordingError(
-            f"{recording.name} has no reference: add ref_roll_rad and ref_pitch_rad, or ref_qw to "
-            "ref_qz, in a CSV file; ref_quat_wxyz or ref_tilt_rad in a .npz file"
-        )
-    scored = recording.valid & np.isfinite(recording.up_reference).all(axis=1)
-    if not scored.any():
-        raise RecordingError(
-            f"{recording.name}: none of its {len(recording)} samples is valid with a reference"
-        )
-    return Track(
-        rate_rad_s=_rows(recording.angular_rate_rad_s),
-        force_m_s2=_rows(recording.specific_force_m_s2),
-        reference=_rows(np.where(scored[:, np.newaxis], recording.up_reference, [0.0, 0.0, 1.0])),
-        scored=np.ascontiguousarray(scored),
-    )
-
-
-def _rows(array: NDArray[Any]) -> Vector:
-    return np.array(array, dtype=np.float64, order="C")

@@ -24,8 +24,8 @@ from hostkit.tuning.dimension import (
     check_fixed,
     check_range,
 )
+from hostkit.tuning.sensor_terms import SENSOR_RANGES, preference
 from hostkit.tuning.tuner import Tunable
-from hostkit.units import RAD_PER_DEG
 
 Vector = NDArray[np.float64]
 
@@ -37,29 +37,10 @@ RANGES: Final[tuple[SearchRange, ...]] = (
     SearchRange(name="rest_rate", lowest=3e-3, highest=0.1, is_log=True),
     SearchRange(name="rest_force", lowest=0.05, highest=3.0, is_log=True),
     SearchRange(name="rest_gain", lowest=0.03, highest=3.0, is_log=True),
-    SearchRange(name="lead", lowest=-0.02, highest=0.02, is_log=False),
-    SearchRange(
-        name="gyro_bias", lowest=-5.0 * RAD_PER_DEG, highest=5.0 * RAD_PER_DEG, is_log=False
-    ),
-    SearchRange(name="gyro_scale", lowest=-0.12, highest=0.12, is_log=False),
-    SearchRange(name="accel_offset", lowest=-0.5, highest=0.5, is_log=False),
-    SearchRange(name="accel_scale", lowest=-0.05, highest=0.05, is_log=False),
+    *SENSOR_RANGES,
 )
 """Where tuned values on public recordings lie, with room around them; rates of decay and gains are
 searched as logarithms."""
-
-USUAL: Final[dict[FreeName, float]] = {
-    "lead": 0.01,
-    "gyro_bias": 1.0 * RAD_PER_DEG,
-    "gyro_scale": 0.03,
-    "accel_offset": 0.25,
-    "accel_scale": 0.03,
-}
-"""How far calibrations are from zero in ordinary sensors, in the unit of a design: scale factors
-within the 3 % of the MPU-6050's data sheet."""
-
-HOLD: Final = 2e-3
-"""Share by which the cost grows where a calibration is that far from zero."""
 
 RANGE_BY_NAME: Final[dict[FreeName, SearchRange]] = {r.name: r for r in RANGES}
 
@@ -86,12 +67,7 @@ class ObserverSpace:
 
         The scale of an axis that the recordings do not turn about would be anything else.
         """
-        factor = np.ones(len(points))
-        for i, dimension in enumerate(self.dimensions):
-            usual = USUAL.get(dimension.name)
-            if usual is not None:
-                factor += HOLD * (points[:, i] / usual) ** 2
-        return factor
+        return preference(self.dimensions, points)
 
     def values(self, points: Vector) -> dict[str, Vector]:
         """Return every parameter of points of shape ``(P, D)`` by its name in a design."""

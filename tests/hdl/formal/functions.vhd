@@ -4,6 +4,7 @@ use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
 use work.hk_common_pkg.all;
+use work.hk_complementary_design_pkg.all;
 use work.hk_complementary_pkg.all;
 use work.hk_design_pkg.all;
 
