@@ -12,7 +12,7 @@ from hostkit.comparison import BUDGET, PEERS, USUAL, CompareOptions, costs, to_d
 from hostkit.comparison import compare as run_comparison
 from hostkit.errors import HostkitError
 from hostkit.mounting import Mounting
-from hostkit.records import AXES, AxisChoice
+from hostkit.records import AXES, AxisChoice, FilterDesign
 
 MS_PER_S = 1e3
 
@@ -28,6 +28,21 @@ def parse_peers(context: click.Context, option: click.Parameter, text: str) -> t
                 f"and all of a package: {', '.join(sorted({p.package for p in PEERS}))}"
             )
     return () if names == ("none",) else names
+
+
+def _check_own(design: FilterDesign | None, axes: AxisChoice, mounting: Mounting) -> None:
+    """Refuse axes or a mounting beside a design that has others: it would be scored by its own."""
+    if design is None:
+        return
+    pairs = (("axes", axes, design.axes), ("mounting", mounting, design.mounting))
+    context = click.get_current_context()
+    for name, asked, own in pairs:
+        source = context.get_parameter_source(name)
+        if source is click.core.ParameterSource.COMMANDLINE and asked != own:
+            raise click.UsageError(
+                f"--{name} {asked}: the design has {own}, and is compared as it is; leave the "
+                "option out, or take another design"
+            )
 
 
 @click.command("compare")
@@ -140,8 +155,10 @@ def compare(
       hostkit compare flight.csv --peers vqf-online,imufusion --report compare.html
     """
     try:
+        design = None if design_file is None else read_design(design_file)
+        _check_own(design, axes, mounting)
         options = CompareOptions(
-            design=None if design_file is None else read_design(design_file),
+            design=design,
             axes=axes,
             mounting=mounting,
             peers=peers,
