@@ -23,7 +23,8 @@ def test_roll_says_little_near_the_pole(pitch_deg: float, mismatches: int) -> No
     accel = np.tile(np.round(force).astype(np.int64), (SAMPLES, 1))
     counts = Counts(accel=accel, gyro=np.zeros_like(accel))
     exact = run_float(own, *to_rate_and_force_g(SENSORS["mpu6050"], own.sensor, counts))[:, :2]
-    told = np.round((exact + [2.0 * FLOAT_TOLERANCE_RAD, 0.0]) / RAD_PER_HALF_TURN_LSB)
+    off = np.array([2.0 * FLOAT_TOLERANCE_RAD, 0.0])
+    told = np.round((exact + off) / RAD_PER_HALF_TURN_LSB)
     answer = Answer(
         row=np.arange(SAMPLES),
         counts=counts,
