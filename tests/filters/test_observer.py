@@ -198,6 +198,20 @@ def test_the_float_model_goes_on_from_a_state() -> None:
     np.testing.assert_allclose(again, run[401:], atol=1e-12)
 
 
+@pytest.mark.parametrize("word", [-(2**31), -1, 0, 2**29, 2**31 - 1, None])
+def test_a_told_state_that_no_device_can_have_does_no_harm(word: int | None) -> None:
+    design = full_design()
+    counts, spec = motion(design, 60), lower(design)
+    rad_s, m_s2 = weights(design)
+    words = np.random.default_rng(2).integers(-(2**31), 2**31, 2 + len(spec.hidden))
+    start = words if word is None else np.full(2 + len(spec.hidden), word)
+    found = run_integer(spec, counts[:, :3], counts[:, 3:], start)
+    assert np.abs(found).max() <= 2**31
+    rate, force = counts[:, 3:] * rad_s, counts[:, :3] * m_s2 / G
+    found = run_float(design, rate, force, start * np.array(spec.state_per_unit))
+    np.testing.assert_allclose(np.linalg.norm(found[9:, 2:6], axis=1), 1.0, atol=0.02)
+
+
 def still(design: FilterDesign, seconds: float, bias: tuple[float, float, float]) -> np.ndarray:
     rad_s, m_s2 = weights(design)
     row = [0.2 * G / m_s2, 0.0, math.sqrt(0.96) * G / m_s2, *(b / rad_s for b in bias)]
