@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hostkit.comparison.calibration import correction_of, no_correction, readings_of
+from hostkit.comparison.calibration import AS_READ, correction_of, readings_of
 from hostkit.comparison.options import CompareOptions
 from hostkit.comparison.own import default_row, design_row, lead_of, tuned_row
 from hostkit.comparison.peer import Peer
@@ -175,7 +175,7 @@ def _peer_rows(
     progress: Progress,
 ) -> tuple[tuple[Row, ...], tuple[Missing, ...]]:
     design = options.design if options.calibrated_peers else None
-    correction = no_correction() if design is None else correction_of(design)
+    correction = AS_READ if design is None else correction_of(design)
     readings = tuple(readings_of(recording, correction) for recording in recordings)
     rows: list[Row] = []
     missing: list[Missing] = []

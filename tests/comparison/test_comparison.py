@@ -6,7 +6,7 @@ import pytest
 from flights import SENSOR
 
 from hostkit.comparison import CompareOptions, chosen_peers, compare, comparison
-from hostkit.comparison.calibration import correction_of, no_correction, readings_of
+from hostkit.comparison.calibration import correction_of, readings_of
 from hostkit.comparison.peer import Peer, PeerParameter, package
 from hostkit.comparison.problem import PeerProblem
 from hostkit.errors import DesignError, HostkitError, RecordingError, ToolMissingError
@@ -57,7 +57,7 @@ def upright(flights):
 def problem(recordings, **changes):
     given = {
         "peer": stub(),
-        "readings": tuple(readings_of(one, no_correction()) for one in recordings),
+        "readings": tuple(readings_of(one) for one in recordings),
         "quantity": "inclination",
         "mounting": Mounting(),
         "lead_s": 0.0,
@@ -142,7 +142,7 @@ def test_lead_reaches_our_filters_and_their_defaults_are_among_the_settings(flig
 
 
 def test_lead_turns_the_direction_of_up_with_the_rate(flights):
-    one = readings_of(flights[0], no_correction())
+    one = readings_of(flights[0])
     turning = replace(one, rate_rad_s=np.tile([2.0, 0.0, 0.0], (len(one.track), 1)))
     up = np.tile([0.0, 0.0, 1.0], (len(one.track), 1))
     led = turning.led(up, 0.01)

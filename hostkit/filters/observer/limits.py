@@ -39,8 +39,8 @@ FIRST_FORCE_G: Final = 1.2
 
 TOLD_SQUARE_LEAST: Final = 0.5
 TOLD_SQUARE_MOST: Final = 2.0
-"""Square of the length of an orientation that a state may begin with. Every step leaves 0.9 to 1; from
-above 5 the renormalisation would run away."""
+"""Square of the length of an orientation that a state may begin with. Every step leaves 0.9 to 1;
+from above 5 the renormalisation would run away."""
 
 FIRST_ROUNDS: Final = 6
 """Renormalisations of the first orientation, whose length is 0.5 to 1.39."""
