@@ -20,6 +20,7 @@ from hostkit.filters.observer import (
     settings,
     step_integer,
 )
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S
 from hostkit.records import FilterDesign
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -235,6 +236,14 @@ def test_without_rest_detection_the_correction_finds_the_bias() -> None:
     design = observer_design(parameter("kb", 0.1), bare=True)
     states = float_states(design, still(design, 120.0, (0.01, 0.0, 0.0)))
     assert states[-1, 8] == pytest.approx(0.01, abs=1e-3)
+
+
+def test_no_bias_is_larger_than_a_sensor_may_have() -> None:
+    design = observer_design(parameter("kt", 0.2), parameter("kb", 0.3), bare=True)
+    spec, counts = lower(design), still(design, 15.0, (math.radians(40.0), 0.0, 0.0))
+    exact = float_states(design, counts)[:, 8]
+    assert exact.max() == exact[-1] == BIAS_LIMIT_RAD_S
+    assert run_integer(spec, counts[:, :3], counts[:, 3:])[-1, 8] == spec.bias_limit
 
 
 def test_an_acceleration_that_comes_and_goes_hardly_tilts_it() -> None:
