@@ -9,10 +9,12 @@ from hostkit.comparison import CompareOptions, chosen_peers, compare, comparison
 from hostkit.comparison.calibration import correction_of, readings_of
 from hostkit.comparison.peer import Peer, PeerParameter, package
 from hostkit.comparison.problem import PeerProblem
+from hostkit.comparison.row import Row
 from hostkit.errors import DesignError, HostkitError, RecordingError, ToolMissingError
 from hostkit.filters.observer import default_parameters, parameter
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
+from hostkit.tuning import HeldOut
 
 BEST = 0.02
 
@@ -101,6 +103,21 @@ def test_slow_peers_get_their_share_and_no_scale(upright, with_stubs):
     assert (fast.is_scaled, fast.evaluations) == (True, 61)
     assert (slow.is_scaled, slow.evaluations) == (False, 9)
     assert fast.held_out is None
+
+
+def test_settings_that_are_as_good_as_can_be_stay_so_however_few_are_tried(upright, with_stubs):
+    best = replace(stub(slowness=50).parameters[0], default=BEST)
+    with_stubs(replace(stub(slowness=50), parameters=(best,)))
+    found = compare(upright, CompareOptions(evaluations=40, held_out=False))
+    default, tuned = (r for r in found.rows if r.origin == "peer")
+    assert tuned.mean_rad == pytest.approx(default.mean_rad, abs=1e-9)
+
+
+def test_the_worst_of_what_was_left_out_is_the_worst_that_is_scored():
+    held_out = HeldOut(unit="parts", folds=3, rms_rad=0.25, each_rad=(math.nan, 0.2, 0.3))
+    row = Row(name="a", title="a", origin="peer", settings="tuned", each_rad=(0.1,), parameters=())
+    assert row.honest_worst_rad == 0.1
+    assert replace(row, held_out=held_out).honest_worst_rad == 0.3
 
 
 def test_a_missing_peer_is_named_with_its_cure(upright, with_stubs):

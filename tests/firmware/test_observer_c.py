@@ -34,6 +34,7 @@ DESIGNS = {
     "wide": observer_design(
         parameter("kt", 9.0),
         parameter("kv", 28.0),
+        parameter("kb", 0.3),
         gyro_full_scale_deg_s=2000,
         accel_full_scale_g=16,
     ),
