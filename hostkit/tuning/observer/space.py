@@ -11,10 +11,10 @@ from hostkit.errors import DesignError
 from hostkit.filters.observer.parameters import (
     BY_NAME,
     KINDS,
-    SENSOR_AXES,
     ParameterKind,
     parameters,
 )
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.records import Parameter
 from hostkit.tuning.dimension import (
     Dimension,
