@@ -6,13 +6,16 @@ import pytest
 from recorded import SENSOR, recorded
 
 from hostkit.errors import DesignError, HostkitError, RecordingError
+from hostkit.filters.observer import lower
 from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.mounting import Mounting
+from hostkit.records import FilterDesign
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
 from hostkit.tuning.archive import archived
 from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer import RANGES, SOURCES, observer_problem
+from hostkit.tuning.observer.space import observer_space
 from hostkit.tuning.retuning import cross_validate
 from hostkit.tuning.search import search
 
@@ -123,11 +126,34 @@ def test_what_is_fixed_and_what_is_left_stands_in_the_design() -> None:
     assert "rest_rate_rad_s" in found
 
 
+@pytest.mark.parametrize("rate_hz", [10.0, 25.0, 50.0, 100.0, 1000.0])
+def test_every_corner_of_the_box_can_be_lowered(rate_hz: float) -> None:
+    space = observer_space(rate_hz, EVERY)
+    sensor = replace(SENSOR, gyro_full_scale_deg_s=250)
+    for corner in (space.lower, space.upper):
+        lower(
+            FilterDesign(
+                filter="observer",
+                axes="both",
+                tilt="atan2",
+                mounting=Mounting.parse("+x+y+z"),
+                rate_hz=rate_hz,
+                sensor=sensor,
+                parameters=space.design_parameters(corner),
+            )
+        )
+    shown = [d.value(x) for d, x in zip(space.dimensions, space.upper, strict=True)]
+    key = {p.name: p.value for p in space.design_parameters(space.upper)}
+    assert key["kt_rad_m"] == shown[0] <= 12.0
+
+
 def test_what_cannot_be_tuned_is_refused() -> None:
     recording = recorded(duration_s=2.0)
     with pytest.raises(DesignError, match="kt is to be tuned and fixed"):
         problem(recording, free=("kt",), fixed=(FixedParameter(name="kt", value=0.1),))
-    with pytest.raises(DesignError, match="gyro_bias = 9"):
+    with pytest.raises(
+        DesignError, match=r"gyro-bias = 515.662 deg/s is outside \[-20, 20 deg/s\]"
+    ):
         problem(recording, fixed=(FixedParameter(name="gyro_bias", value=9.0),))
     narrow = SearchRange(name="kv", lowest=2.0, highest=1.0, is_log=True)
     with pytest.raises(DesignError, match="range of kv"):

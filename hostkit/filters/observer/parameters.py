@@ -265,7 +265,8 @@ def checked_value(design: FilterDesign, kind: ParameterKind, key: str) -> float 
     if not found:
         return None
     if not (math.isfinite(found[0]) and kind.lowest <= found[0] <= kind.highest):
+        unit = "" if kind.unit == "1" else f" {kind.unit}"
         raise DesignError(
-            f"{key} = {found[0]} {kind.unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
+            f"{key} = {found[0]:g}{unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
         )
     return found[0]
