@@ -9,19 +9,18 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import inclination_rad, to_body, up_from_tilt, wrap_rad
 from hostkit.comparison.row import Row, Settings
+from hostkit.comparison.tuned import tuned
 from hostkit.errors import RecordingError
 from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
 from hostkit.records import AXES, FilterDesign, Parameter
 from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sensor_config
-from hostkit.tuning.archive import ArchivedTask, archived
 from hostkit.tuning.dimension import Dimension
 from hostkit.tuning.evaluation import Evaluation
 from hostkit.tuning.reference import reference_rad
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
-from hostkit.tuning.search import choose_optimiser, search
 from hostkit.tuning.task import Space
 from hostkit.tuning.tune import tuning_task
+from hostkit.tuning.tuner import Tuner
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -105,32 +104,26 @@ def tuned_row(
         free = tuple(name for name in tuner.free if name != SCALE)
         options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
-    problem = archived(task, LEAST_UNITS) if task.is_dear else task
-    if task.is_dear:
-        problem.cost(_start(problem.space, tuner.default())[np.newaxis])
-    optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
-    swarm = search(problem, options, optimiser)
-    x = swarm.x
-    if isinstance(problem, ArchivedTask):
-        x = retune(problem, np.ones((1, len(recordings), problem.blocks)), options)[0]
-    each = tuple(problem.rms_rad(x, i) for i in range(len(recordings)))
-    row = _row(options.filter, "tuned", each, problem.space.design_parameters(x), lead_s)
-    held_out = cross_validate(problem, options) if options.held_out else None
+    start = _start(task.space, tuner) if task.is_dear else None
+    found = tuned(task, start, options)
+    parameters = task.space.design_parameters(found.x)
     return replace(
-        row,
-        is_scaled=any(d.name == SCALE for d in problem.space.dimensions),
-        held_out=held_out,
-        evaluations=swarm.evaluations + task.is_dear,
+        _row(options.filter, "tuned", found.each_rad, parameters, lead_s),
+        is_scaled=any(d.name == SCALE for d in task.space.dimensions),
+        held_out=found.held_out,
+        evaluations=found.evaluations,
     )
 
 
-def _start(space: Space, parameters: tuple[Parameter, ...]) -> Vector:
-    """Return the default as a point of the search, shape ``(D,)``; what it has not is zero."""
+def _start(space: Space, tuner: Tuner) -> Vector:
+    """Return the default as a point of the search, shape ``(D,)``; what it has not is lowest."""
+    values = {p.name: p.value for p in tuner.default()}
 
     def coordinate(dimension: Dimension) -> float:
-        own = (p for p in parameters if p.name.startswith(f"{dimension.name}_"))
-        value = next((p.value for p in own), 0.0)
-        return math.log(value) if dimension.is_log else value
+        value = values.get(tuner.key(dimension.name, dimension.axis), 0.0)
+        if dimension.is_log:
+            return math.log(value) if value > 0.0 else dimension.lower
+        return value
 
     points = np.array([coordinate(dimension) for dimension in space.dimensions])
     return np.asarray(np.clip(points, space.lower, space.upper))

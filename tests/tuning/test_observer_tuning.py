@@ -52,6 +52,27 @@ def test_the_compiled_observer_is_the_float_model(axes, mounting: str, objective
     np.testing.assert_allclose(compiled, modelled, rtol=1e-5 if axes == "both" else 1e-9)
 
 
+def wild():
+    """Clipped rates and shocks at the start, a slow even turn that is no rest, and a rest."""
+    recording, rng = recorded(duration_s=9.0), np.random.default_rng(4)
+    rate, force = np.zeros((len(recording), 3)), np.tile([2.0, 1.0, 9.5], (len(recording), 1))
+    first = slice(0, len(recording) // 3)
+    rate[first] = rng.normal(0.0, 2.0, rate[first].shape)
+    force[first] += rng.normal(0.0, 20.0, force[first].shape)
+    rate[first.stop : 2 * first.stop] = [0.0, 0.22, 0.1]
+    rate[2 * first.stop :] = [0.0, 0.15, -0.1]
+    return replace(recording, angular_rate_rad_s=rate, specific_force_m_s2=force)
+
+
+@pytest.mark.skipif(library(SOURCES) is None, reason="no C compiler")
+def test_the_compiled_observer_has_the_limits_of_the_float_model() -> None:
+    fixed = FixedParameter(name="clip_rate", value=3.0), FixedParameter(name="start", value=8.0)
+    p = problem(wild(), axes="roll", free=("kt", "rest_gain"), fixed=fixed)
+    x = points(p, 4)
+    compiled, modelled = p.block_sums(x, 6), replace(p, kernel=None).block_sums(x, 6)
+    np.testing.assert_allclose(compiled, modelled, rtol=1e-7)
+
+
 def test_blocks_add_up_and_only_scored_samples_count() -> None:
     recording = recorded(duration_s=4.0)
     valid = np.arange(len(recording)) % 3 == 0

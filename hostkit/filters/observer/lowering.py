@@ -26,7 +26,7 @@ from hostkit.filters.observer.limits import (
     rest_samples,
     start_end,
 )
-from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME
 from hostkit.filters.observer.settings import Settings, settings
 from hostkit.filters.observer.spec import (
     ObserverFormats,
@@ -36,6 +36,7 @@ from hostkit.filters.observer.spec import (
     Triple,
 )
 from hostkit.filters.observer.state_words import state_words
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.fixedpoint import round_half_up
 from hostkit.records import AXES, FilterDesign
 from hostkit.sensors import SENSORS

@@ -12,10 +12,10 @@ from hostkit.filters.observer.lowering import largest_that_fits
 from hostkit.filters.observer.parameters import (
     BY_NAME,
     KINDS,
-    SENSOR_AXES,
     ParameterKind,
     parameters,
 )
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.records import Parameter
 from hostkit.tuning.dimension import (
     Dimension,

@@ -1,0 +1,67 @@
+"""Tuning a filter for a comparison: the same search and the same scores for ours and for peers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hostkit.tuning import HeldOut, TuningOptions
+from hostkit.tuning.archive import ArchivedTask, archived
+from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
+from hostkit.tuning.search import choose_optimiser, search
+from hostkit.tuning.task import Task
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tuned:
+    """The best point of a search, and how it does.
+
+    Attributes
+    ----------
+    x
+        Coordinates in the space of the task, shape ``(D,)``.
+    each_rad
+        RMSE of every recording, in their order.
+    held_out
+        The errors while recordings were left out; None if that was not asked for.
+    evaluations
+        How many points were tried.
+    """
+
+    x: Vector
+    each_rad: tuple[float, ...]
+    held_out: HeldOut | None
+    evaluations: int
+
+
+def tuned(task: Task, start: Vector | None, options: TuningOptions) -> Tuned:
+    """Search a task.
+
+    Parameters
+    ----------
+    start
+        The filter's own settings as a point, shape ``(D,)``: where points are dear, and so few are
+        tried, it is one of them. None where they are not.
+
+    Raises
+    ------
+    HostkitError
+        If the cost is finite nowhere.
+    """
+    problem = task
+    if start is not None:
+        problem = archived(task, LEAST_UNITS)
+        problem.cost(start[np.newaxis])
+    optimiser = choose_optimiser(options.optimiser, len(task.space.dimensions))
+    swarm = search(problem, options, optimiser)
+    x, recordings = swarm.x, len(task.lengths)
+    if isinstance(problem, ArchivedTask):
+        x = retune(problem, np.ones((1, recordings, problem.blocks)), options)[0]
+    return Tuned(
+        x=x,
+        each_rad=tuple(problem.rms_rad(x, i) for i in range(recordings)),
+        held_out=cross_validate(problem, options) if options.held_out else None,
+        evaluations=swarm.evaluations + (start is not None),
+    )
