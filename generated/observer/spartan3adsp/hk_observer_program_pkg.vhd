@@ -117,7 +117,7 @@ package body hk_observer_program_pkg is
       first_force(force_x, spare_x) & first_force(force_y, spare_y)
       & first_force(force_z, spare_z) & upright_c;
   begin
-    return ending(forces_c & loading_c & upright_first_c 
+    return ending(forces_c & loading_c & upright_first_c
                   & repeated(lack_c & lack_30_c & lengthen_c, first_rounds_c));
   end function first_program;
 

@@ -289,34 +289,34 @@ static inline int32_t hk_regs_signed(uint32_t value, unsigned bits)
 #define HK_REGS_UART_RX_VALID_SHIFT 8
 #define HK_REGS_UART_RX_VALID_BITS 1
 
-/* Setting: correction per sample and acceleration. */
+/* Setting: correction per sample and acceleration, kt / (2 rate^2). */
 #define HK_REGS_KT_OFFSET 0x40U
 #define HK_REGS_KT_RESET UINT32_C(0x003B642F)
-/* correction per sample and acceleration; read, write */
+/* correction per sample and acceleration, kt / (2 rate^2); read, write */
 #define HK_REGS_KT_VALUE_MASK UINT32_C(0xFFFFFFFF)
 #define HK_REGS_KT_VALUE_SHIFT 0
 #define HK_REGS_KT_VALUE_BITS 32
 
-/* Setting: share of the velocity that goes in a sample. */
+/* Setting: share of the velocity that goes in a sample, kv / rate. */
 #define HK_REGS_KV_OFFSET 0x44U
 #define HK_REGS_KV_RESET UINT32_C(0x00F5C28F)
-/* share of the velocity that goes in a sample; read, write */
+/* share of the velocity that goes in a sample, kv / rate; read, write */
 #define HK_REGS_KV_VALUE_MASK UINT32_C(0xFFFFFFFF)
 #define HK_REGS_KV_VALUE_SHIFT 0
 #define HK_REGS_KV_VALUE_BITS 32
 
-/* Setting: bias per correction. */
+/* Setting: bias per correction, kb / rate. */
 #define HK_REGS_KB_OFFSET 0x48U
 #define HK_REGS_KB_RESET UINT32_C(0x039ABF34)
-/* bias per correction; read, write */
+/* bias per correction, kb / rate; read, write */
 #define HK_REGS_KB_VALUE_MASK UINT32_C(0xFFFFFFFF)
 #define HK_REGS_KB_VALUE_SHIFT 0
 #define HK_REGS_KB_VALUE_BITS 32
 
-/* Setting: half-angle that the bias of x turns in a sample, at the start. */
+/* Setting: half-angle that the bias of x turns in a sample, bias (1 + scale) / (2 rate), at the start. */
 #define HK_REGS_GYRO_BIAS_X_OFFSET 0x4CU
 #define HK_REGS_GYRO_BIAS_X_RESET UINT32_C(0x01ABD1AB)
-/* half-angle that the bias of x turns in a sample, at the start; read, write */
+/* half-angle that the bias of x turns in a sample, bias (1 + scale) / (2 rate), at the start; read, write */
 #define HK_REGS_GYRO_BIAS_X_VALUE_MASK UINT32_C(0xFFFFFFFF)
 #define HK_REGS_GYRO_BIAS_X_VALUE_SHIFT 0
 #define HK_REGS_GYRO_BIAS_X_VALUE_BITS 32
