@@ -5,14 +5,23 @@ from pathlib import Path
 import click
 
 from hostkit.cli.compare_output import show
-from hostkit.cli.inputs import JSON, RECORDINGS, finite, read_design, read_recording, say
+from hostkit.cli.inputs import (
+    JSON,
+    RECORDINGS,
+    REPORT,
+    axes_option,
+    finite,
+    mounting_option,
+    read_design,
+    read_recording,
+    say,
+)
 from hostkit.cli.output import emit_json
-from hostkit.cli.tune import parse_mounting
 from hostkit.comparison import BUDGET, PEERS, USUAL, CompareOptions, costs, to_document
 from hostkit.comparison import compare as run_comparison
 from hostkit.errors import HostkitError
 from hostkit.mounting import Mounting
-from hostkit.records import AXES, AxisChoice, FilterDesign
+from hostkit.records import AxisChoice, FilterDesign
 
 MS_PER_S = 1e3
 
@@ -54,21 +63,8 @@ def _check_own(design: FilterDesign | None, axes: AxisChoice, mounting: Mounting
     metavar="FILE",
     help="Compare this design; without one, hostkit's filters by themselves and tuned.",
 )
-@click.option(
-    "--axes",
-    type=click.Choice(tuple(AXES)),
-    default="both",
-    show_default=True,
-    help="Score one angle, or the inclination; a design brings its own.",
-)
-@click.option(
-    "--mounting",
-    default="+x+y+z",
-    show_default=True,
-    callback=parse_mounting,
-    metavar="AXES",
-    help="Body x, y, z as signed sensor axes; a design brings its own.",
-)
+@axes_option("Score one angle, or the inclination; a design brings its own.")
+@mounting_option("Body x, y, z as signed sensor axes; a design brings its own.")
 @click.option(
     "--peers",
     default=",".join(USUAL),
@@ -119,13 +115,7 @@ def _check_own(design: FilterDesign | None, axes: AxisChoice, mounting: Mounting
 )
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=1, show_default=True)
 @click.option("--jobs", type=click.IntRange(1), default=1, show_default=True)
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with a chart.",
-)
+@REPORT
 @JSON
 def compare(
     recording_files: tuple[Path, ...],
