@@ -15,6 +15,7 @@ from hostkit.cli.inputs import (
     read_design,
     read_recording,
     say,
+    say_repeated,
 )
 from hostkit.cli.output import emit_json
 from hostkit.comparison import BUDGET, PEERS, USUAL, CompareOptions, costs, to_document
@@ -163,6 +164,7 @@ def compare(
     except HostkitError as error:
         raise click.UsageError(str(error)) from error
     recordings = tuple(read_recording(path) for path in recording_files)
+    say_repeated(recordings)
     comparison = run_comparison(recordings, options, say)
     found = costs(recordings[0], options) if with_cost else ()
     if as_json:

@@ -235,6 +235,8 @@ def _show(result: EmulationResult, built: BuildResult | tuple[str, ...]) -> None
         f"{result.target}: {result.samples} samples, {result.missing} missing, "
         f"{result.mismatches} {differing}; largest difference to the float model {shown}"
     )
+    if result.states_told and result.tolerance_rad is None:
+        click.echo(f"whole states told and compared: {result.states_told}")
     if result.cycles_mean is not None:
         cost = f"{result.cycles_mean:.1f} mean, {result.cycles_max:.0f} max"
         click.echo(f"{result.cost_unit} per update: {cost}")

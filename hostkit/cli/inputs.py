@@ -130,3 +130,17 @@ def read_design(path: Path) -> FilterDesign:
     if edited_by_hand(path):
         say(f"{path} was edited since it was written; it is now design {digest(design)}")
     return design
+
+
+def say_repeated(recordings: tuple[Recording | LargeRecording, ...]) -> None:
+    """Say which recordings are there twice: what is left out of one is tuned on in the other."""
+    names: dict[str, str] = {}
+    for recording in recordings:
+        if isinstance(recording, LargeRecording) or not recording.sha256:
+            continue
+        if recording.sha256 in names:
+            say(
+                f"{recording.name} is the same recording as {names[recording.sha256]}: it counts "
+                "twice, and an error on what was left out is a training error"
+            )
+        names[recording.sha256] = recording.name

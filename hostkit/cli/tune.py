@@ -15,6 +15,7 @@ from hostkit.cli.inputs import (
     mounting_option,
     read_for_tuning,
     say,
+    say_repeated,
 )
 from hostkit.cli.output import emit_json
 from hostkit.cli.parameter_options import AUTO_FILTER, FILTER, FIX, FREE, RANGE
@@ -234,6 +235,7 @@ def _tune_one(
     as_json: bool,
 ) -> None:
     recordings = tuple(read_for_tuning(path) for path in files)
+    say_repeated(recordings)
     options = with_filter(recordings, options)
     sensor = sensor_config(
         recordings,

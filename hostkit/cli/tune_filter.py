@@ -37,8 +37,9 @@ def with_filter(
     if recommended is None:
         if options.filter == AUTO_FILTER:
             raise HostkitError(
-                "the sensor hardly tilts, so the motion calls for no filter in particular: "
-                f"name one with --filter: {', '.join(FILTERS.names())}"
+                "the motion of the recordings cannot be judged (hostkit diagnose says why), so it "
+                "calls for no filter in particular: name one with --filter: "
+                f"{', '.join(FILTERS.names())}"
             )
         _say_unfit(diagnoses)
         return options

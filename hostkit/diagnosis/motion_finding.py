@@ -1,7 +1,7 @@
 """The verdict on the motion, in a sentence."""
 
 from hostkit.diagnosis.diagnosis import Diagnosis
-from hostkit.diagnosis.planarity import EXTRA_LIMIT_RAD
+from hostkit.diagnosis.planarity import EXTRA_LIMIT_RAD, SPATIAL_LIMIT_RAD
 from hostkit.units import DEG_PER_RAD
 
 SINGLE_SHARE = 0.9
@@ -20,12 +20,19 @@ _UNUSED = (
 def motion_sentence(diagnosis: Diagnosis) -> tuple[str, str]:
     """Return what the motion asks for, and what to do; empty if nothing."""
     planarity = diagnosis.planarity
+    errors = planarity.errors
+    if planarity.verdict is None and errors.spatial_rad > SPATIAL_LIMIT_RAD:
+        return (
+            "cannot be judged: even a three-dimensional filter would be "
+            f"{errors.spatial_rad * DEG_PER_RAD:.2f} deg rms off against the {planarity.tilt} "
+            f"(limit {SPATIAL_LIMIT_RAD * DEG_PER_RAD:g})",
+            "look for an axis of the wrong sign, a wrong unit, or readings that are clipped",
+        )
     if planarity.verdict is None:
         return (
             "the sensor hardly tilts, so the motion cannot be judged",
             "record the motion that the filter is for",
         )
-    errors = planarity.errors
     text = (
         f"{planarity.verdict}: {_filters(diagnosis)} "
         f"{errors.predicted_rad * DEG_PER_RAD:.2f} deg rms off against the {planarity.tilt}, a "

@@ -21,6 +21,8 @@ EXTRA_LIMIT_RAD = 1.0 * RAD_PER_DEG
 """What the neglected rates may add. docs/diagnosis.md has the recordings that this parts."""
 PLANAR_SPREAD_RAD = 1.0 * RAD_PER_DEG
 """An angle that spreads by less (standard deviation) needs no filter of its own."""
+SPATIAL_LIMIT_RAD = 5.0 * RAD_PER_DEG
+"""Beyond it rate and force contradict each other; sound public recordings have 4.3 at most."""
 MOTION_LIMIT_RAD = 1.0 * RAD_PER_DEG
 """Below this spread of the tilt there was too little motion to judge."""
 
@@ -36,7 +38,8 @@ class Planarity:
     Attributes
     ----------
     verdict
-        None if the sensor hardly tilted, so that nothing can be said.
+        None if the sensor hardly tilted, or if not even a filter in three dimensions gets near, so
+        that nothing can be said.
     tilt
         What the errors are held against: the reference, or where there is none an estimate from
         the recording itself.
@@ -89,7 +92,7 @@ def planarity(
     x, y, z = (share / max(float(share.sum()), 1e-300)).tolist()
     roll_spread, pitch_spread = (_spread(ANGLE[axis](case.body_up)[case.scored]) for axis in ANGLE)
     return Planarity(
-        verdict=_verdict(case, errors.extra_rad, min(roll_spread, pitch_spread)),
+        verdict=_verdict(case, errors, min(roll_spread, pitch_spread)),
         tilt=source,
         scored=int(np.count_nonzero(case.scored)),
         rate_error_rad_s=_rate_error(case),
@@ -152,13 +155,15 @@ def _spread(angle: Vector) -> float:
     return math.sqrt(-2.0 * math.log(min(1.0, max(length, 1e-300))))
 
 
-def _verdict(case: Case, extra_rad: float, lesser_spread_rad: float) -> Verdict | None:
+def _verdict(case: Case, errors: FilterErrors, lesser_spread_rad: float) -> Verdict | None:
     """Judge; of unit vectors, ``2 (1 - |mean|)`` is the mean square of the distance to the mean."""
     mean = case.up[case.scored].mean(axis=0)
     if 2.0 * (1.0 - float(np.linalg.norm(mean))) < MOTION_LIMIT_RAD**2:
         return None
-    if extra_rad > EXTRA_LIMIT_RAD:
+    if errors.extra_rad > EXTRA_LIMIT_RAD:
         return "needs a three-dimensional filter"
+    if errors.spatial_rad > SPATIAL_LIMIT_RAD:
+        return None
     if case.axes == "both" and lesser_spread_rad > PLANAR_SPREAD_RAD:
         return "two axes suffice"
     return "planar"

@@ -37,6 +37,12 @@ def test_held_out_stands_beside_training(tune):
     assert "left out" not in tune("--axes", "roll", "--no-held-out")[0]
 
 
+def test_a_recording_that_is_named_twice_is_said(tune):
+    assert "same recording" not in tune("--axes", "roll", "--resamples", "0")[1]
+    err = tune("steps.npz", "--axes", "roll", "--resamples", "0")[1]
+    assert "steps is the same recording as steps" in err
+
+
 def test_document_has_held_out_intervals_and_history(tune):
     document = json.loads(tune("--axes", "roll", "--json", "--resamples", "10")[0])
     held_out = document["held_out"]

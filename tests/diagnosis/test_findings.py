@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnosis_cases import Simulate, Still
 
-from hostkit.diagnosis import diagnose, findings
+from hostkit.diagnosis import diagnose, findings, recommended_filter
 from hostkit.recordings import Recording
 from hostkit.simulation import SensorErrors
 from hostkit.units import RAD_PER_DEG, STANDARD_GRAVITY_M_S2
@@ -28,6 +28,16 @@ def test_every_look_has_an_action_and_no_ok_has_one(moved: Simulate, still: Stil
             assert (finding.level == "look") == bool(finding.action)
             assert finding.line().startswith("!" if finding.action else " ")
             assert "\n" not in finding.line()
+
+
+def test_a_recording_that_contradicts_itself_is_not_judged(moved: Simulate) -> None:
+    sound = moved("random", 30.0)
+    rate = -sound.angular_rate_rad_s
+    diagnosis = diagnose(replace(sound, angular_rate_rad_s=rate, up_reference=None))
+    assert diagnosis.planarity.verdict is None
+    motion = next(f for f in findings(diagnosis) if f.topic == "motion")
+    assert "wrong sign" in motion.action
+    assert recommended_filter(diagnosis) is None
 
 
 def test_no_gate_is_asked_of_a_motion_for_the_observer(moved: Simulate) -> None:
