@@ -14,13 +14,12 @@ from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
 from hostkit.records import AXES, FilterDesign, Parameter
 from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sensor_config
-from hostkit.tuning.archive import ArchivedTask, archived
-from hostkit.tuning.dimension import Dimension
+from hostkit.tuning.archive import archived
 from hostkit.tuning.evaluation import Evaluation
 from hostkit.tuning.reference import reference_rad
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
-from hostkit.tuning.search import choose_optimiser, search
-from hostkit.tuning.task import Space
+from hostkit.tuning.retuning import LEAST_UNITS, cross_validate
+from hostkit.tuning.search import choose_optimiser
+from hostkit.tuning.start import search_default
 from hostkit.tuning.tune import tuning_task
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -106,34 +105,17 @@ def tuned_row(
         options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
     problem = archived(task, LEAST_UNITS) if task.is_dear else task
-    if task.is_dear:
-        problem.cost(_start(problem.space, tuner.default())[np.newaxis])
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
-    swarm = search(problem, options, optimiser)
-    x = swarm.x
-    if isinstance(problem, ArchivedTask):
-        x = retune(problem, np.ones((1, len(recordings), problem.blocks)), options)[0]
-    each = tuple(problem.rms_rad(x, i) for i in range(len(recordings)))
-    row = _row(options.filter, "tuned", each, problem.space.design_parameters(x), lead_s)
+    swarm = search_default(problem, options, optimiser, tuner.default())
+    each = tuple(problem.rms_rad(swarm.x, i) for i in range(len(recordings)))
+    row = _row(options.filter, "tuned", each, problem.space.design_parameters(swarm.x), lead_s)
     held_out = cross_validate(problem, options) if options.held_out else None
     return replace(
         row,
         is_scaled=any(d.name == SCALE for d in problem.space.dimensions),
         held_out=held_out,
-        evaluations=swarm.evaluations + task.is_dear,
+        evaluations=swarm.evaluations,
     )
-
-
-def _start(space: Space, parameters: tuple[Parameter, ...]) -> Vector:
-    """Return the default as a point of the search, shape ``(D,)``; what it has not is zero."""
-
-    def coordinate(dimension: Dimension) -> float:
-        own = (p for p in parameters if p.name.startswith(f"{dimension.name}_"))
-        value = next((p.value for p in own), 0.0)
-        return math.log(value) if dimension.is_log else value
-
-    points = np.array([coordinate(dimension) for dimension in space.dimensions])
-    return np.asarray(np.clip(points, space.lower, space.upper))
 
 
 def lead_of(design: FilterDesign) -> float:

@@ -13,7 +13,7 @@ from hostkit.tuning.complementary.problem import Problem
 from hostkit.tuning.kernel import ErrorStream, NativeKernel
 from hostkit.tuning.kernel.native import LineTask
 from hostkit.tuning.options import AUTO, TuningOptions
-from hostkit.tuning.task import Task
+from hostkit.tuning.task import Space, Task
 
 Vector = NDArray[np.float64]
 
@@ -137,13 +137,18 @@ def _line_task(problem: Problem) -> LineTask | None:
 def _result(problem: Problem, x: float, history: Vector, evaluations: int) -> SwarmResult:
     if not np.isfinite(history[-1]):
         raise HostkitError("the cost is not finite at any point that was visited")
-    lower, upper = problem.space.lower, problem.space.upper
-    point, edge = np.array([x]), EDGE * (upper - lower)
+    point = np.array([x])
     return SwarmResult(
         x=point,
         cost=float(history[-1]),
         history=history,
         evaluations=evaluations,
-        at_bound=(point - lower <= edge) | (upper - point <= edge),
+        at_bound=on_bound(problem.space, point),
         stopped_at=len(history) - 1,
     )
+
+
+def on_bound(space: Space, point: Vector) -> NDArray[np.bool_]:
+    """Return where a point lies on an end of its range, shape ``(D,)``."""
+    edge = EDGE * (space.upper - space.lower)
+    return np.asarray((point - space.lower <= edge) | (space.upper - point <= edge))

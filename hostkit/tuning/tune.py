@@ -20,8 +20,9 @@ from hostkit.tuning.determination import Interval, Profile, intervals, profiles,
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.retuning import LEAST_UNITS, HeldOut, bootstrap, cross_validate
-from hostkit.tuning.search import choose_optimiser, search
+from hostkit.tuning.search import choose_optimiser
 from hostkit.tuning.sensor_choice import sensor_config
+from hostkit.tuning.start import search_default
 from hostkit.tuning.task import Task
 from hostkit.tuning.tuner import AnyRecording
 from hostkit.tuning.tuners import TUNERS
@@ -80,7 +81,7 @@ def _tune(
 ) -> TuningResult:
     rate_hz = recordings[0].rate_hz
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
-    swarm = search(problem, options, optimiser)
+    swarm = search_default(problem, options, optimiser, TUNERS[options.filter].default())
     design = FilterDesign(
         filter=options.filter,
         axes=options.axes,

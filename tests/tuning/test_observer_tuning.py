@@ -6,7 +6,7 @@ import pytest
 from recorded import SENSOR, recorded
 
 from hostkit.errors import DesignError, HostkitError, RecordingError
-from hostkit.filters.observer.parameters import BY_NAME
+from hostkit.filters.observer.parameters import BY_NAME, default_parameters
 from hostkit.mounting import Mounting
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
@@ -15,6 +15,7 @@ from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer import RANGES, SOURCES, observer_problem
 from hostkit.tuning.retuning import cross_validate
 from hostkit.tuning.search import search
+from hostkit.tuning.start import default_point, search_default
 
 EVERY = tuple(r.name for r in RANGES)
 
@@ -125,3 +126,24 @@ def test_a_scale_that_no_motion_shows_stays_near_nothing() -> None:
     p = archived(problem(still, free=("gyro_scale",)), 16)
     found = search(p, TuningOptions(filter="observer", iterations=40), "qpso")
     assert np.abs(found.x).max() < 0.02
+
+
+def test_a_search_too_short_to_find_anything_leaves_the_default() -> None:
+    recordings = tuple(recorded("random", seed=s, duration_s=6.0) for s in (1, 2))
+    options = TuningOptions(filter="observer", particles=2, iterations=1, seed=2)
+    p = archived(problem(*recordings), 16)
+    start = default_point(p.space, default_parameters())
+    expected = p.cost(start[np.newaxis])[0]
+    assert expected < search(p, options, "qpso").cost
+    found = search_default(p, options, "qpso", default_parameters())
+    np.testing.assert_array_equal(found.x, start)
+    assert (found.cost, found.history[-1], found.evaluations) == (expected, expected, 5)
+
+
+def test_the_default_is_a_point_of_every_search() -> None:
+    free = ("kt", "start", "lead")
+    narrow = SearchRange(name="kt", lowest=0.1, highest=1.0, is_log=True)
+    p = problem(recorded(duration_s=2.0), free=free, ranges=(narrow,))
+    point = default_point(p.space, default_parameters())
+    np.testing.assert_allclose(point, [np.log(0.1), np.log(BY_NAME["start"].default), 0.0])
+    np.testing.assert_allclose(default_point(p.space, ())[:2], np.log([0.1**0.5, 0.5**0.5]))
