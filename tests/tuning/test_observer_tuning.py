@@ -147,3 +147,14 @@ def test_the_default_is_a_point_of_every_search() -> None:
     point = default_point(p.space, default_parameters())
     np.testing.assert_allclose(point, [np.log(0.1), np.log(BY_NAME["start"].default), 0.0])
     np.testing.assert_allclose(default_point(p.space, ())[:2], np.log([0.1**0.5, 0.5**0.5]))
+
+
+def test_thresholds_of_rest_stay_near_their_defaults_where_nothing_moves_them() -> None:
+    swinging = recorded("sine-sweep", duration_s=6.0, errors=SensorErrors())
+    p = archived(problem(swinging, free=("rest_rate", "rest_gain", "kt")), 16)
+    found = search(p, TuningOptions(filter="observer", iterations=60), "qpso")
+    defaults = np.log([BY_NAME["rest_rate"].default, BY_NAME["rest_gain"].default])
+    np.testing.assert_allclose(found.x[1:], defaults, atol=0.1)
+    usual = np.array([found.x[0], *defaults])
+    doubled = usual + np.log([1.0, 2.0, 1.0])
+    np.testing.assert_allclose(p.preference(np.array([usual, doubled])), [1.0, 1.002])
