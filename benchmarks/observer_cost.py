@@ -58,8 +58,8 @@ def on_this_machine() -> Table:
         columns=("filter", "ns a sample", "VQF / this"),
         rows=tuple(_timed(cost, vqf) for cost in found),
         remarks=(
-            f"The aim of the observer in floats is {AIM:g}. Ours is compiled with -O3, without "
-            "instructions of this very processor; VQF is the wheel from PyPI.",
+            f"The aim of the observer in floats is {AIM:g}. Ours is compiled with -O2, as by its "
+            "own Makefile; VQF is the wheel from PyPI.",
             *(f"{c.title}, {c.timed}: {c.reason}" for c in found if c.reason),
         ),
     )

@@ -87,8 +87,7 @@ class GyroFit:
 def fit_gyroscope(problem: Problem, rest: RestRate) -> GyroFit:
     """Fit bias and scale.
 
-    A scale whose standard error is above the
-    limit is set to 0 and the others are fitted again.
+    A scale whose standard error is above the limit is set to 0 and the others are fitted again.
 
     Parameters
     ----------

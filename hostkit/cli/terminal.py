@@ -161,6 +161,8 @@ def verdict_text(snapshot: Snapshot) -> str:
     """Return the verdict, as far as it is known."""
     if snapshot.report.samples == 0 and not snapshot.ended:
         return "no samples yet"
+    if snapshot.report.checked == 0 and snapshot.report.verdict == "fail" and not snapshot.ended:
+        return "no step checked yet"
     return snapshot.report.verdict + ("" if snapshot.ended else " so far")
 
 

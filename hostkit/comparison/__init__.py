@@ -1,6 +1,6 @@
 """Comparing hostkit's filters with those of other packages: accuracy and cost."""
 
-from hostkit.comparison.comparison import Comparison, Missing, compare
+from hostkit.comparison.comparison import Comparison, compare
 from hostkit.comparison.cost import Cost, costs
 from hostkit.comparison.document import to_document
 from hostkit.comparison.options import BUDGET, CompareOptions
@@ -14,7 +14,6 @@ __all__ = [
     "CompareOptions",
     "Comparison",
     "Cost",
-    "Missing",
     "Row",
     "chosen_peers",
     "compare",

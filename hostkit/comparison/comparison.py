@@ -5,9 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
-from hostkit.comparison.calibration import correction_of, no_correction, readings_of
+from hostkit.comparison.calibration import AS_READ, correction_of, readings_of
 from hostkit.comparison.options import CompareOptions
 from hostkit.comparison.own import default_row, design_row, lead_of, tuned_row
 from hostkit.comparison.peer import Peer
@@ -15,14 +13,13 @@ from hostkit.comparison.peers import chosen_peers
 from hostkit.comparison.problem import PeerProblem
 from hostkit.comparison.row import Row
 from hostkit.comparison.smoothed import smoother_row
+from hostkit.comparison.tuned import tuned
 from hostkit.errors import RecordingError, ToolMissingError
+from hostkit.optimisers import qpso
 from hostkit.recordings import Recording
 from hostkit.records import FilterDesign
 from hostkit.tuning import TUNERS, TuningOptions
-from hostkit.tuning.archive import archived
 from hostkit.tuning.evaluation import Quantity, require_rate
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
-from hostkit.tuning.search import search
 
 PARTICLES = 20
 SCALE_BUDGET = 60
@@ -175,7 +172,7 @@ def _peer_rows(
     progress: Progress,
 ) -> tuple[tuple[Row, ...], tuple[Missing, ...]]:
     design = options.design if options.calibrated_peers else None
-    correction = no_correction() if design is None else correction_of(design)
+    correction = AS_READ if design is None else correction_of(design)
     readings = tuple(readings_of(recording, correction) for recording in recordings)
     rows: list[Row] = []
     missing: list[Missing] = []
@@ -213,18 +210,14 @@ def _rows_of(problem: PeerProblem, options: CompareOptions) -> Iterator[Row]:
     planned = peer.evaluations(options.evaluations)
     problem = replace(problem, is_scaled=options.gyro_scale and planned >= SCALE_BUDGET)
     space = problem.space
-    tuning = _tuning_options(options, peer.name, planned)
-    kept = archived(problem, LEAST_UNITS)
-    kept.cost(space.start[np.newaxis])
-    swarm = search(kept, tuning, "qpso")
-    blocks = kept.blocks
-    x = retune(kept, np.ones((1, len(problem.readings), blocks)), tuning)[0]
+    tuning = replace(_tuning_options(options, peer.name, planned), optimiser=qpso.NAME)
+    found = tuned(problem, space.start, tuning)
     yield replace(
         row,
         settings="tuned",
         is_scaled=problem.is_scaled,
-        each_rad=tuple(problem.each_rms_rad(space.values(x)).tolist()),
-        held_out=cross_validate(kept, tuning) if options.held_out else None,
-        parameters=space.design_parameters(x),
-        evaluations=swarm.evaluations + 1,
+        each_rad=found.each_rad,
+        held_out=found.held_out,
+        parameters=space.design_parameters(found.x),
+        evaluations=found.evaluations,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from hostkit.comparison.calibration import no_correction, readings_of
+from hostkit.comparison.calibration import readings_of
 from hostkit.comparison.generated import generated_filter
 from hostkit.comparison.options import CompareOptions
 from hostkit.comparison.peer import Peer
@@ -177,7 +177,7 @@ def _generated(
 
 
 def _peer(peer: Peer, recording: Recording) -> _Contender:
-    whole = readings_of(recording, no_correction())
+    whole = readings_of(recording)
     rate, force = whole.rate_rad_s[:MOST_SAMPLES], whole.force_m_s2[:MOST_SAMPLES]
     samples = len(rate)
 

@@ -20,9 +20,9 @@ from hostkit.targets import TARGETS
 
 DRIVER: Final = Path(__file__).with_name("update_cost.c")
 COMPILERS: Final = ("cc", "gcc", "clang")
-FLAGS: Final = ("-O3", "-std=c99", "-ffp-contract=off", "-fPIC", "-shared")
-"""Optimised as Python builds its own extension modules, and so the peers'; no code for this very
-processor; arithmetic as in the Makefile of the host target."""
+FLAGS: Final = ("-O2", "-std=c99", "-ffp-contract=off", "-fPIC", "-shared")
+"""Optimisation and arithmetic as in the Makefile of the host target; no code for this very
+processor."""
 FILTER_FILES: Final = ("hk_filter*.c", "hk_arctan.c", "hk_fixed.c", "hk_units.c")
 BUILD_TIMEOUT_S: Final = 60
 

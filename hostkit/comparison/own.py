@@ -9,17 +9,15 @@ from numpy.typing import NDArray
 
 from hostkit.attitude import inclination_rad, to_body, up_from_tilt, wrap_rad
 from hostkit.comparison.row import Row, Settings
+from hostkit.comparison.tuned import tuned
 from hostkit.errors import RecordingError
 from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
 from hostkit.records import AXES, FilterDesign, Parameter
 from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sensor_config
-from hostkit.tuning.archive import archived
 from hostkit.tuning.evaluation import Evaluation
 from hostkit.tuning.reference import reference_rad
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate
-from hostkit.tuning.search import choose_optimiser
-from hostkit.tuning.start import search_default
+from hostkit.tuning.start import default_point
 from hostkit.tuning.tune import tuning_task
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -104,17 +102,14 @@ def tuned_row(
         free = tuple(name for name in tuner.free if name != SCALE)
         options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
-    problem = archived(task, LEAST_UNITS) if task.is_dear else task
-    optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
-    swarm = search_default(problem, options, optimiser, tuner.default())
-    each = tuple(problem.rms_rad(swarm.x, i) for i in range(len(recordings)))
-    row = _row(options.filter, "tuned", each, problem.space.design_parameters(swarm.x), lead_s)
-    held_out = cross_validate(problem, options) if options.held_out else None
+    start = default_point(task.space, tuner) if task.is_dear else None
+    found = tuned(task, start, options)
+    parameters = task.space.design_parameters(found.x)
     return replace(
-        row,
-        is_scaled=any(d.name == SCALE for d in problem.space.dimensions),
-        held_out=held_out,
-        evaluations=swarm.evaluations,
+        _row(options.filter, "tuned", found.each_rad, parameters, lead_s),
+        is_scaled=any(d.name == SCALE for d in task.space.dimensions),
+        held_out=found.held_out,
+        evaluations=found.evaluations,
     )
 
 

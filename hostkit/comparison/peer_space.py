@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.comparison.peer import Peer
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.records import Parameter
 from hostkit.tuning.dimension import Dimension
 from hostkit.tuning.sensor_terms import SENSOR_RANGES, preference
@@ -15,7 +16,6 @@ from hostkit.tuning.sensor_terms import SENSOR_RANGES, preference
 Vector = NDArray[np.float64]
 
 SCALE: Final = "gyro_scale"
-SENSOR_AXES: Final = ("x", "y", "z")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,6 +16,7 @@ from hostkit.mounting import Mounting
 from hostkit.records import Objective
 from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
+from hostkit.tuning.task import Search, SearchPlan
 
 Vector = NDArray[np.float64]
 
@@ -94,6 +95,10 @@ class PeerProblem:
     def preference(self, points: Vector) -> Vector:
         """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual."""
         return self.space.preference(points)
+
+    def quick_search(self, plan: SearchPlan) -> Search | None:
+        """Return none: a peer is only run."""
+        return None
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE of sums over so many samples."""

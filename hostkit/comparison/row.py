@@ -67,5 +67,5 @@ class Row:
 
     @property
     def honest_worst_rad(self) -> float:
-        """Worst on what the settings were not tuned on, as far as that is known."""
-        return self.worst_rad if self.held_out is None else max(self.held_out.each_rad)
+        """Worst of what is scored, on what they were not tuned on as far as that is known."""
+        return self.worst_rad if self.held_out is None else float(np.nanmax(self.held_out.each_rad))

@@ -10,6 +10,7 @@ from hostkit.diagnosis.force import PERCENTILES, VIBRATION_FROM_HZ
 from hostkit.diagnosis.motion_finding import motion_sentence
 from hostkit.diagnosis.noise import MIN_STRETCH_S, long_stretches
 from hostkit.diagnosis.noise_finding import noise_sentences
+from hostkit.diagnosis.recommendation import recommended_filter
 from hostkit.recordings.sanity.sensor_findings import MAX_BIAS_DEG_S, MAX_FORCE_ERROR
 from hostkit.recordings.sanity.time_findings import GAP_STEPS, MAX_JITTER
 from hostkit.units import DEG_PER_RAD, STANDARD_GRAVITY_M_S2
@@ -20,6 +21,14 @@ FORCE_SPREAD_LIMIT = 0.01
 """Differences of the force between orientations at rest: 1 % across gravity is 0.6 deg."""
 TEMPERATURE_LIMIT_DEG_C = 5.0
 GATE_G = 0.1
+BIAS_ACTION = (
+    "hostkit calibrate imu puts it into the design; the observer also follows what is left of it"
+)
+SCALE_ACTION = (
+    "record the sensor at rest on its six faces for hostkit calibrate imu; of the filters the "
+    "observer has a place for offset and scale of the accelerometer"
+)
+GATE_ACTION = "try --free tau,gate and compare the errors on what was left out"
 
 Level = Literal["ok", "look"]
 Topic = Literal[
@@ -157,7 +166,7 @@ def _bias(diagnosis: Diagnosis) -> Iterator[Finding]:
         topic="bias",
         level="look" if large else "ok",
         sentence=f"the gyroscope reads {', '.join(shown)} deg/s at rest (x, y, z)",
-        action="subtract it, or tune a filter that has a bias" if large else "",
+        action=BIAS_ACTION if large else "",
     )
     uneven = abs(rest.force_error) > MAX_FORCE_ERROR or rest.force_spread > FORCE_SPREAD_LIMIT
     yield Finding(
@@ -167,7 +176,7 @@ def _bias(diagnosis: Diagnosis) -> Iterator[Finding]:
             f"at rest the force is {100.0 * rest.force_error:+.2f} % off gravity and differs by "
             f"{100.0 * rest.force_spread:.2f} % between the stretches"
         ),
-        action="calibrate offset and scale of the accelerometer on six faces" if uneven else "",
+        action=SCALE_ACTION if uneven else "",
     )
 
 
@@ -203,12 +212,14 @@ def _vibration(diagnosis: Diagnosis) -> Finding:
 
 def _force(diagnosis: Diagnosis) -> Finding:
     half, *_, most, _ = diagnosis.force.deviation_percentiles_g
-    moved = most > GATE_G
+    recommended = recommended_filter(diagnosis)
+    gated = recommended is None or recommended.filter == "complementary"
+    moved = most > GATE_G and gated
     text = (
         f"| |f| - 1 g | is up to {half:.3f} g for {PERCENTILES[0]:g} % and up to {most:.3f} g for "
         f"{PERCENTILES[-2]:g} % of the samples"
     )
-    action = "try --free tau,gate and compare the errors on what was left out" if moved else ""
+    action = GATE_ACTION if moved else ""
     return Finding(topic="force", level="look" if moved else "ok", sentence=text, action=action)
 
 

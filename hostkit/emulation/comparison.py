@@ -148,7 +148,7 @@ def compare(
     residual = _residual_rad(answer.state_raw, exact[row])
     wrong = (
         ~inside
-        | _state_wrong(answer.state_raw, wanted[row], residual, answer.tolerance_rad)
+        | _state_wrong(answer.state_raw, wanted[row], exact[row], answer.tolerance_rad)
         | (answer.counts.accel != counts.accel[row]).any(axis=1)
         | (answer.counts.gyro != counts.gyro[row]).any(axis=1)
     )
@@ -194,7 +194,7 @@ def compare_with_faults(
     repeated = repeats(sent) & (row < 0)
     wanted, exact = answers_of_models(design, sent, trace.restarted)
     residual = _residual_rad(trace.state_raw, exact)
-    wrong = _state_wrong(trace.state_raw, wanted, residual, tolerance_rad)
+    wrong = _state_wrong(trace.state_raw, wanted, exact, tolerance_rad)
     wrong |= (row < 0) & ~repeated
     axes = exact.shape[1]
     places = trace.sequence, trace.sequence
@@ -232,20 +232,23 @@ def _residual_rad(state_raw: IntArray, exact: Vector) -> Vector:
 
 
 def _max_abs_error_rad(state_raw: IntArray, exact: Vector) -> float | None:
-    angle = state_raw[:, : exact.shape[1]] * RAD_PER_HALF_TURN_LSB
-    return float(apart_rad(angle, exact).max()) if len(exact) else None
+    return float(_apart_rad(state_raw, exact).max()) if len(exact) else None
+
+
+def _apart_rad(state_raw: IntArray, exact: Vector) -> Vector:
+    return apart_rad(state_raw[:, : exact.shape[1]] * RAD_PER_HALF_TURN_LSB, exact)
 
 
 def _state_wrong(
-    state_raw: IntArray, wanted: IntArray, residual_rad: Vector, tolerance_rad: float | None
+    state_raw: IntArray, wanted: IntArray, exact: Vector, tolerance_rad: float | None
 ) -> BoolArray:
     """Tell which states are not the model's: in any bit, or by more than the tolerance.
 
     They may be the angles only.
     """
-    wanted = wanted[:, : state_raw.shape[1]]
-    differ = state_raw != wanted if tolerance_rad is None else np.abs(residual_rad) > tolerance_rad
-    return np.asarray(differ.any(axis=1))
+    if tolerance_rad is not None:
+        return np.asarray(_apart_rad(state_raw, exact) > tolerance_rad)
+    return np.asarray((state_raw != wanted[:, : state_raw.shape[1]]).any(axis=1))
 
 
 def _mark_told(

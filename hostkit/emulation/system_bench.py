@@ -19,6 +19,9 @@ BENCH = "hk_system_tb"
 BUILD = "build-system"
 """Folder below the generated one that holds GHDL's library and the elaborated bench."""
 
+DRAIN_US = 4000
+"""After the last row: reading it, the filter, and a state, a heartbeat and a sample on the line."""
+
 BUILD_TIMEOUT_S = 300.0
 RUN_TIMEOUT_S = 120.0
 LIMIT_US = 800_000
@@ -127,6 +130,7 @@ def run_system(
             "BAUD": timing.baud,
             "TIME_DIVISOR": timing.time_divisor,
             "ROWS": len(table),
+            "DRAIN_US": DRAIN_US,
             "LIMIT_US": LIMIT_US // timing.time_divisor + LIMIT_ROW_US * len(table),
         } | dict(generics)
         _run(build, [f"-g{key}={value}" for key, value in wanted.items()], len(table))

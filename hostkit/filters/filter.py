@@ -22,7 +22,7 @@ SpecOfT = TypeVar("SpecOfT", bound=FixedPointSpec, contravariant=True)
 
 
 class RunFloat(Protocol):
-    """The float model, see :func:`hostkit.filters.complementary.run_float`."""
+    """The float model."""
 
     def __call__(
         self,
@@ -31,11 +31,24 @@ class RunFloat(Protocol):
         force_g: Vector,
         start: Vector | None = None,
     ) -> Vector:
-        """Run it."""
+        """Run it.
+
+        Parameters
+        ----------
+        rate_rad_s, force_g
+            Angular rate and specific force (in g) in sensor axes, each of shape ``(N, 3)``.
+        start
+            State before the first sample, shape ``(S,)``; without it the first sample loads.
+
+        Returns
+        -------
+        numpy.ndarray
+            States, shape ``(N, S)``, the angles in rad and the hidden words in their units.
+        """
 
 
 class RunInteger(Protocol[SpecOfT]):
-    """The integer model, see :func:`hostkit.filters.complementary.run_integer`."""
+    """The integer model: what the generated C and VHDL compute, bit for bit."""
 
     def __call__(
         self,
@@ -44,7 +57,21 @@ class RunInteger(Protocol[SpecOfT]):
         gyro_count: IntArray,
         start: IntArray | None = None,
     ) -> IntArray:
-        """Run it."""
+        """Run it.
+
+        Parameters
+        ----------
+        accel_count, gyro_count
+            Counts in sensor axes, each of shape ``(N, 3)``.
+        start
+            State before the first sample, shape ``(S,)``; without it the first sample loads. It may
+            be what a stranger told: whatever its words are, no step takes long or fails.
+
+        Returns
+        -------
+        numpy.ndarray
+            States, shape ``(N, S)``.
+        """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +101,7 @@ class Fact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterView:
-    """Another quantity that says the same as a parameter, as eta does of a time constant.
+    """Another quantity that says the same as a parameter, as a frequency does of a time constant.
 
     Attributes
     ----------

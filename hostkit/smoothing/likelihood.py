@@ -54,7 +54,7 @@ def _motion(blocks: Blocks, settings: SmootherSettings, estimate: Estimate) -> f
     def heavy(vectors: Array, size: float) -> float:
         share = np.sum(vectors * vectors, axis=1) / (TAIL * size * size)
         scale = TAIL * DIMENSIONS / (TAIL + DIMENSIONS) * np.log(size)
-        return float(np.sum(time * (TAIL * np.log1p(share) + TAIL * scale)))
+        return float(np.sum(time * (TAIL * np.log1p(share) + 2.0 * scale)))
 
     return heavy(estimate.velocity_m_s, settings.speed_m_s) + heavy(
         estimate.position_m, settings.reach_m

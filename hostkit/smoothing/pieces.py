@@ -64,8 +64,8 @@ def _prepared(
     known: KnownSensor,
 ) -> Prepared:
     return prepare(
-        part.at_grid(known.rate_rad_s(recording.angular_rate_rad_s[part.rows])),
-        part.at_grid(known.force_m_s2(recording.specific_force_m_s2[part.rows])),
+        part.at_grid(known.correction.rate_rad_s(recording.angular_rate_rad_s[part.rows])),
+        part.at_grid(known.correction.force_m_s2(recording.specific_force_m_s2[part.rows])),
         part.period_s,
         settings,
         part.doubted | part.any_at_grid(clipped[part.rows]),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.records import Objective
-from hostkit.tuning.task import Space, Task
+from hostkit.tuning.task import Search, SearchPlan, Space, Task
 
 Vector = NDArray[np.float64]
 
@@ -103,6 +103,10 @@ class ArchivedTask:
         counts = self.block_counts(1)[:, :, 0, None]
         cost = self.metric(sums.sum(axis=2), counts).mean(axis=(0, 1))
         return np.asarray(cost * self.preference(points))
+
+    def quick_search(self, plan: SearchPlan) -> Search | None:
+        """Return none: what is searched elsewhere cannot be remembered."""
+        return None
 
     def visited(self) -> Visited:
         """Return all that is remembered."""

@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+from hostkit.errors import DesignError
 from hostkit.filters import FILTERS
 from hostkit.records import FilterDesign, SensorConfig
-from hostkit.tuning.dimension import FixedParameter
+from hostkit.tuning.dimension import FixedParameter, option_name
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.tuner import Tuner
 from hostkit.tuning.tuners import TUNERS
@@ -19,7 +20,12 @@ def with_calibration(options: TuningOptions, rate_hz: float) -> TuningOptions:
     """Return options in which the terms of their calibration are fixed.
 
     What the user fixed stays as it is. A parameter that is calibrated is not searched, unless the
-    user named it; then the search refuses to do both.
+    user named it.
+
+    Raises
+    ------
+    DesignError
+        If the user named one that is calibrated.
     """
     if options.calibration is None:
         return options
@@ -27,6 +33,12 @@ def with_calibration(options: TuningOptions, rate_hz: float) -> TuningOptions:
     named = {one.name for one in options.fixed}
     fixed = tuple(one for one in _fixed(options, tuner, rate_hz) if one.name not in named)
     calibrated = {one.name for one in fixed}
+    for name in options.free:
+        if name in calibrated:
+            raise DesignError(
+                f"{option_name(name)} is to be tuned, and the calibration has it: leave it out of "
+                "what is free, or do without the calibration"
+            )
     free = options.free or tuple(name for name in tuner.free if name not in calibrated | named)
     return replace(options, fixed=(*options.fixed, *fixed), free=free)
 

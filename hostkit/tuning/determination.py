@@ -120,7 +120,13 @@ def remarks(
     walked
         What :func:`profiles` gave.
     """
-    return (*_at_edge(problem, x), *_flat(least_rad, walked), *_alike(problem, x))
+    flat = {profile.dimension.label: _flat_share(least_rad, profile) for profile in walked}
+    open_ = {label for label, share in flat.items() if share > FLAT_SHARE}
+    return (
+        *_at_edge(problem, x),
+        *(_flat(label, share) for label, share in flat.items() if label in open_),
+        *_alike(problem, x, open_),
+    )
 
 
 def _at_edge(problem: Task, x: Vector) -> tuple[str, ...]:
@@ -137,21 +143,23 @@ def _at_edge(problem: Task, x: Vector) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _flat(least_rad: float, walked: tuple[Profile, ...]) -> tuple[str, ...]:
-    found = []
-    for profile in walked:
-        share = float(np.mean(profile.cost_rad <= FLAT_COST * least_rad))
-        if share > FLAT_SHARE:
-            found.append(
-                f"the recordings do not determine {profile.dimension.label}: over "
-                f"{100 * share:.0f} % of its range the cost stays within "
-                f"{100 * (FLAT_COST - 1):.0f} % of the least"
-            )
-    return tuple(found)
+def _flat_share(least_rad: float, profile: Profile) -> float:
+    """Return over which share of its range a parameter is as good as at the optimum."""
+    return float(np.mean(profile.cost_rad <= FLAT_COST * least_rad))
 
 
-def _alike(problem: Task, x: Vector) -> tuple[str, ...]:
-    """Name the pairs whose estimates are nearly one: the correlation of the Gauss-Newton step."""
+def _flat(label: str, share: float) -> str:
+    return (
+        f"the recordings do not determine {label}: over {100 * share:.0f} % of its range the cost "
+        f"stays within {100 * (FLAT_COST - 1):.0f} % of the least"
+    )
+
+
+def _alike(problem: Task, x: Vector, open_: set[str]) -> tuple[str, ...]:
+    """Name the pairs whose estimates are nearly one: the correlation of the Gauss-Newton step.
+
+    What the recordings do not determine has been named already, and goes along with anything.
+    """
     dimensions = problem.space.dimensions
     inverse = np.linalg.pinv(_information(problem, x), rcond=1e-12, hermitian=True)
     spread = np.sqrt(np.clip(np.diag(inverse), 0.0, None))
@@ -163,7 +171,7 @@ def _alike(problem: Task, x: Vector) -> tuple[str, ...]:
         f"{correlation[i, j]:+.2f}): fix one, or record more kinds of motion"
         for i in range(len(dimensions))
         for j in range(i)
-        if abs(correlation[i, j]) > ALIKE
+        if abs(correlation[i, j]) > ALIKE and not open_ & {dimensions[i].label, dimensions[j].label}
     )
 
 

@@ -120,7 +120,7 @@ def require_rate(rate_hz: float, recording: Recording | LargeRecording) -> None:
     if abs(recording.rate_hz / rate_hz - 1.0) > RATE_TOLERANCE:
         raise RecordingError(
             f"{recording.name} was sampled at {recording.rate_hz:g} Hz, the design is for "
-            f"{rate_hz:g} Hz; eta holds for one rate only: tune at the rate of the recording"
+            f"{rate_hz:g} Hz; a design holds for one rate only: tune at the rate of the recording"
         )
 
 

@@ -23,7 +23,8 @@ def reference_up(recording: Recording) -> Vector:
     if recording.up_reference is None:
         raise RecordingError(
             f"{recording.name} has no reference: add ref_roll_rad and ref_pitch_rad, or ref_qw to "
-            "ref_qz, in a CSV file; ref_quat_wxyz or ref_tilt_rad in a .npz file"
+            "ref_qz, in a CSV file; ref_quat_wxyz or ref_tilt_rad in a .npz file; or let hostkit "
+            "smooth find one"
         )
     return recording.up_reference
 

@@ -45,8 +45,8 @@ class HeldOut:
     folds
         Number of tunings.
     rms_rad
-        Mean over recordings (or parts) of the error while left out: RMSE of the axis, or of the
-        inclination.
+        Error while left out, RMSE of the axis or of the inclination: mean over recordings; of the
+        parts of a single one the RMSE over all of them together, as that of the whole recording.
     each_rad
         That error one by one, in the order of the recordings or parts.
     """
@@ -69,17 +69,29 @@ def cross_validate(problem: Task, options: TuningOptions) -> HeldOut:
         weights = (fold_of != np.arange(folds)[:, None]).astype(np.float64)[:, :, None]
         x = refined(problem, weights, retune(problem, weights, options), options)
         each = [problem.rms_rad(x[fold_of[r]], r) for r in range(recordings)]
-        return _held_out("recordings", folds, each)
+        return _held_out("recordings", folds, each, np.ones(recordings), power=1)
     weights = 1.0 - np.eye(SINGLE_FOLDS)[:, None, :]
     x = refined(problem, weights, retune(problem, weights, options), options)
     cuts = edges(problem.lengths[0], SINGLE_FOLDS)
     each = [problem.rms_rad(x[i], 0, cuts[i], cuts[i + 1]) for i in range(SINGLE_FOLDS)]
-    return _held_out("parts", SINGLE_FOLDS, each)
+    counts = problem.block_counts(SINGLE_FOLDS)[0].sum(axis=0)
+    return _held_out("parts", SINGLE_FOLDS, each, counts, power=2)
 
 
-def _held_out(unit: Literal["recordings", "parts"], folds: int, each: list[float]) -> HeldOut:
-    scored = [value for value in each if np.isfinite(value)]
-    mean = float(np.mean(scored)) if scored else float("nan")
+def _held_out(
+    unit: Literal["recordings", "parts"],
+    folds: int,
+    each: list[float],
+    weights: Vector,
+    *,
+    power: int,
+) -> HeldOut:
+    """Average the errors that there are: their mean, or with power 2 the root of their squares'."""
+    errors = np.array(each)
+    scored = np.isfinite(errors) & (weights > 0.0)
+    mean = math.nan
+    if scored.any():
+        mean = float(np.average(errors[scored] ** power, weights=weights[scored])) ** (1.0 / power)
     return HeldOut(unit=unit, folds=folds, rms_rad=mean, each_rad=tuple(each))
 
 

@@ -20,9 +20,9 @@ from hostkit.tuning.determination import Interval, Profile, intervals, profiles,
 from hostkit.tuning.evaluation import Evaluation, evaluate, mean_rms_rad, require_rate
 from hostkit.tuning.options import TuningOptions
 from hostkit.tuning.retuning import LEAST_UNITS, HeldOut, bootstrap, cross_validate
-from hostkit.tuning.search import choose_optimiser
+from hostkit.tuning.search import choose_optimiser, search
 from hostkit.tuning.sensor_choice import sensor_config
-from hostkit.tuning.start import search_default
+from hostkit.tuning.start import default_point, search_from
 from hostkit.tuning.task import Task
 from hostkit.tuning.tuner import AnyRecording
 from hostkit.tuning.tuners import TUNERS
@@ -81,7 +81,7 @@ def _tune(
 ) -> TuningResult:
     rate_hz = recordings[0].rate_hz
     optimiser = choose_optimiser(options.optimiser, len(problem.space.dimensions))
-    swarm = search_default(problem, options, optimiser, TUNERS[options.filter].default())
+    swarm = _search(problem, options, optimiser)
     design = FilterDesign(
         filter=options.filter,
         axes=options.axes,
@@ -108,6 +108,14 @@ def _tune(
         profiles=walked,
         remarks=remarks(problem, swarm.x, swarm.cost, walked),
     )
+
+
+def _search(problem: Task, options: TuningOptions, optimiser: str) -> SwarmResult:
+    """Search; where points are dear the search is short, and the default is one of them."""
+    if not problem.is_dear:
+        return search(problem, options, optimiser)
+    start = default_point(problem.space, TUNERS[options.filter])
+    return search_from(problem, options, optimiser, start)
 
 
 def tuning_task(recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path) -> Task:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import wrap_rad
+from hostkit.attitude import apart_rad
 from hostkit.filters import FILTERS
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
@@ -100,8 +100,7 @@ class Follower:
         if self._tolerance_rad is None:
             wrong = (self._expected(used, trace) != trace.state_raw).any(axis=1)
         else:
-            away = np.abs(wrap_rad(self.device_rad(trace) - exact))
-            wrong = (away > self._tolerance_rad).any(axis=1)
+            wrong = apart_rad(self.device_rad(trace), exact) > self._tolerance_rad
         self._state = trace.state_raw[-1:]
         confirmed = int(judged.sum())
         return Steps(exact=exact, judged=judged, wrong=wrong & judged, confirmed=confirmed)

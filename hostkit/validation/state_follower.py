@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hostkit.attitude import wrap_rad
+from hostkit.attitude import apart_rad
 from hostkit.filters import FILTERS
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS
@@ -164,8 +164,8 @@ class StateFollower:
         steps.exact[which] = exact[:, : self._axes]
         steps.judged[which] = True
         if self._tolerance_rad is not None:
-            away = np.abs(wrap_rad(self.device_rad(trace)[which] - exact[:, : self._axes]))
-            steps.wrong[which] = (away > self._tolerance_rad).any(axis=1)
+            away = apart_rad(self.device_rad(trace)[which], exact[:, : self._axes])
+            steps.wrong[which] = away > self._tolerance_rad
             return [None] * len(exact)
         accel, gyro = trace.accel_count[which], trace.gyro_count[which]
         states = self._filter.run_integer(used.spec, accel, gyro, self._state)

@@ -6,13 +6,15 @@ import pytest
 from flights import SENSOR
 
 from hostkit.comparison import CompareOptions, chosen_peers, compare, comparison
-from hostkit.comparison.calibration import correction_of, no_correction, readings_of
+from hostkit.comparison.calibration import correction_of, readings_of
 from hostkit.comparison.peer import Peer, PeerParameter, package
 from hostkit.comparison.problem import PeerProblem
+from hostkit.comparison.row import Row
 from hostkit.errors import DesignError, HostkitError, RecordingError, ToolMissingError
 from hostkit.filters.observer import default_parameters, parameter
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
+from hostkit.tuning import HeldOut
 
 BEST = 0.02
 
@@ -57,7 +59,7 @@ def upright(flights):
 def problem(recordings, **changes):
     given = {
         "peer": stub(),
-        "readings": tuple(readings_of(one, no_correction()) for one in recordings),
+        "readings": tuple(readings_of(one) for one in recordings),
         "quantity": "inclination",
         "mounting": Mounting(),
         "lead_s": 0.0,
@@ -103,6 +105,21 @@ def test_slow_peers_get_their_share_and_no_scale(upright, with_stubs):
     assert fast.held_out is None
 
 
+def test_settings_that_are_as_good_as_can_be_stay_so_however_few_are_tried(upright, with_stubs):
+    best = replace(stub(slowness=50).parameters[0], default=BEST)
+    with_stubs(replace(stub(slowness=50), parameters=(best,)))
+    found = compare(upright, CompareOptions(evaluations=40, held_out=False))
+    default, tuned = (r for r in found.rows if r.origin == "peer")
+    assert tuned.mean_rad == pytest.approx(default.mean_rad, abs=1e-9)
+
+
+def test_the_worst_of_what_was_left_out_is_the_worst_that_is_scored():
+    held_out = HeldOut(unit="parts", folds=3, rms_rad=0.25, each_rad=(math.nan, 0.2, 0.3))
+    row = Row(name="a", title="a", origin="peer", settings="tuned", each_rad=(0.1,), parameters=())
+    assert row.honest_worst_rad == 0.1
+    assert replace(row, held_out=held_out).honest_worst_rad == 0.3
+
+
 def test_a_missing_peer_is_named_with_its_cure(upright, with_stubs):
     with_stubs(stub(absent, name="gone"), stub())
     found = compare(upright, CompareOptions(tune=False))
@@ -142,7 +159,7 @@ def test_lead_reaches_our_filters_and_their_defaults_are_among_the_settings(flig
 
 
 def test_lead_turns_the_direction_of_up_with_the_rate(flights):
-    one = readings_of(flights[0], no_correction())
+    one = readings_of(flights[0])
     turning = replace(one, rate_rad_s=np.tile([2.0, 0.0, 0.0], (len(one.track), 1)))
     up = np.tile([0.0, 0.0, 1.0], (len(one.track), 1))
     led = turning.led(up, 0.01)

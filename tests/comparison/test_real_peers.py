@@ -7,7 +7,7 @@ import pytest
 from flights import SENSOR, flight
 
 from hostkit.comparison import PEERS, CompareOptions, costs
-from hostkit.comparison.calibration import no_correction, readings_of
+from hostkit.comparison.calibration import readings_of
 from hostkit.comparison.problem import PeerProblem
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
@@ -20,7 +20,7 @@ def test_a_peer_finds_up_in_our_axes(name):
     pytest.importorskip(peer.package)
     problem = PeerProblem(
         peer=peer,
-        readings=(readings_of(flight(), no_correction()),),
+        readings=(readings_of(flight()),),
         quantity="inclination",
         mounting=Mounting(),
         lead_s=0.0,
@@ -33,7 +33,7 @@ def test_a_peer_finds_up_in_our_axes(name):
 def test_parameters_reach_the_package(name):
     peer = PEERS[name]
     pytest.importorskip(peer.package)
-    one = readings_of(flight(duration_s=4.0), no_correction())
+    one = readings_of(flight(duration_s=4.0))
     for i, parameter in enumerate(peer.parameters):
         values = list(peer.defaults)
         values[i] = parameter.lowest if parameter.is_log else parameter.highest

@@ -20,6 +20,7 @@ from hostkit.filters.observer import (
     settings,
     step_integer,
 )
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S
 from hostkit.records import FilterDesign
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -198,6 +199,20 @@ def test_the_float_model_goes_on_from_a_state() -> None:
     np.testing.assert_allclose(again, run[401:], atol=1e-12)
 
 
+@pytest.mark.parametrize("word", [-(2**31), -1, 0, 2**29, 2**31 - 1, None])
+def test_a_told_state_that_no_device_can_have_does_no_harm(word: int | None) -> None:
+    design = full_design()
+    counts, spec = motion(design, 60), lower(design)
+    rad_s, m_s2 = weights(design)
+    words = np.random.default_rng(2).integers(-(2**31), 2**31, 2 + len(spec.hidden))
+    start = words if word is None else np.full(2 + len(spec.hidden), word)
+    found = run_integer(spec, counts[:, :3], counts[:, 3:], start)
+    assert np.abs(found).max() <= 2**31
+    rate, force = counts[:, 3:] * rad_s, counts[:, :3] * m_s2 / G
+    found = run_float(design, rate, force, start * np.array(spec.state_per_unit))
+    np.testing.assert_allclose(np.linalg.norm(found[9:, 2:6], axis=1), 1.0, atol=0.02)
+
+
 def still(design: FilterDesign, seconds: float, bias: tuple[float, float, float]) -> np.ndarray:
     rad_s, m_s2 = weights(design)
     row = [0.2 * G / m_s2, 0.0, math.sqrt(0.96) * G / m_s2, *(b / rad_s for b in bias)]
@@ -221,6 +236,14 @@ def test_without_rest_detection_the_correction_finds_the_bias() -> None:
     design = observer_design(parameter("kb", 0.1), bare=True)
     states = float_states(design, still(design, 120.0, (0.01, 0.0, 0.0)))
     assert states[-1, 8] == pytest.approx(0.01, abs=1e-3)
+
+
+def test_no_bias_is_larger_than_a_sensor_may_have() -> None:
+    design = observer_design(parameter("kt", 0.2), parameter("kb", 0.3), bare=True)
+    spec, counts = lower(design), still(design, 15.0, (math.radians(40.0), 0.0, 0.0))
+    exact = float_states(design, counts)[:, 8]
+    assert exact.max() == exact[-1] == BIAS_LIMIT_RAD_S
+    assert run_integer(spec, counts[:, :3], counts[:, 3:])[-1, 8] == spec.bias_limit
 
 
 def test_an_acceleration_that_comes_and_goes_hardly_tilts_it() -> None:

@@ -22,11 +22,6 @@ REGISTRIES = {"filters/__init__.py": "hostkit.filters", "tuning/tuners.py": "hos
 """Where filters are named, once, and of which room."""
 
 
-EXCUSED = {
-    "tuning/search.py": "searches one parameter of the complementary filter in compiled code",
-}
-
-
 def modules() -> list[Path]:
     return sorted(PACKAGE.rglob("*.py"))
 
@@ -64,13 +59,7 @@ def test_every_filter_has_its_rule() -> None:
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_only_its_own_packages_import_a_filter(path: Path) -> None:
     place = path.relative_to(PACKAGE).as_posix()
-    if place not in EXCUSED:
-        assert offences(place, imported(path)) == set()
-
-
-def test_an_excuse_is_needed() -> None:
-    for place in EXCUSED:
-        assert offences(place, imported(PACKAGE / place)), f"{place} needs no excuse"
+    assert offences(place, imported(path)) == set()
 
 
 @pytest.mark.parametrize(

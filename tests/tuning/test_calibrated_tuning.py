@@ -48,5 +48,5 @@ def test_what_the_user_fixes_comes_before_the_calibration() -> None:
 
 def test_a_calibrated_parameter_is_not_searched_as_well() -> None:
     recording = recorded(duration_s=3.0)
-    with pytest.raises(DesignError, match="gyro_scale is to be tuned and fixed"):
+    with pytest.raises(DesignError, match="gyro-scale is to be tuned, and the calibration has it"):
         tune((recording,), options("observer", free=("kt", "gyro_scale")))

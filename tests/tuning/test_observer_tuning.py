@@ -6,16 +6,19 @@ import pytest
 from recorded import SENSOR, recorded
 
 from hostkit.errors import DesignError, HostkitError, RecordingError
-from hostkit.filters.observer.parameters import BY_NAME, default_parameters
+from hostkit.filters.observer import lower
+from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.mounting import Mounting
+from hostkit.records import FilterDesign
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
 from hostkit.tuning.archive import archived
 from hostkit.tuning.kernel.library import library
-from hostkit.tuning.observer import RANGES, SOURCES, observer_problem
+from hostkit.tuning.observer import OBSERVER_TUNER, RANGES, SOURCES, observer_problem
+from hostkit.tuning.observer.space import observer_space
 from hostkit.tuning.retuning import cross_validate
 from hostkit.tuning.search import search
-from hostkit.tuning.start import default_point, search_default
+from hostkit.tuning.start import default_point, search_from
 
 EVERY = tuple(r.name for r in RANGES)
 
@@ -48,6 +51,27 @@ def test_the_compiled_observer_is_the_float_model(axes, mounting: str, objective
     compiled, modelled = p.block_sums(x, 3), replace(p, kernel=None).block_sums(x, 3)
     assert compiled.shape == (2, 1, 3, 11)
     np.testing.assert_allclose(compiled, modelled, rtol=1e-5 if axes == "both" else 1e-9)
+
+
+def wild():
+    """Clipped rates and shocks at the start, a slow even turn that is no rest, and a rest."""
+    recording, rng = recorded(duration_s=9.0), np.random.default_rng(4)
+    rate, force = np.zeros((len(recording), 3)), np.tile([2.0, 1.0, 9.5], (len(recording), 1))
+    first = slice(0, len(recording) // 3)
+    rate[first] = rng.normal(0.0, 2.0, rate[first].shape)
+    force[first] += rng.normal(0.0, 20.0, force[first].shape)
+    rate[first.stop : 2 * first.stop] = [0.0, 0.22, 0.1]
+    rate[2 * first.stop :] = [0.0, 0.15, -0.1]
+    return replace(recording, angular_rate_rad_s=rate, specific_force_m_s2=force)
+
+
+@pytest.mark.skipif(library(SOURCES) is None, reason="no C compiler")
+def test_the_compiled_observer_has_the_limits_of_the_float_model() -> None:
+    fixed = FixedParameter(name="clip_rate", value=3.0), FixedParameter(name="start", value=8.0)
+    p = problem(wild(), axes="roll", free=("kt", "rest_gain"), fixed=fixed)
+    x = points(p, 4)
+    compiled, modelled = p.block_sums(x, 6), replace(p, kernel=None).block_sums(x, 6)
+    np.testing.assert_allclose(compiled, modelled, rtol=1e-7)
 
 
 def test_blocks_add_up_and_only_scored_samples_count() -> None:
@@ -103,11 +127,34 @@ def test_what_is_fixed_and_what_is_left_stands_in_the_design() -> None:
     assert "rest_rate_rad_s" in found
 
 
+@pytest.mark.parametrize("rate_hz", [10.0, 25.0, 50.0, 100.0, 1000.0])
+def test_every_corner_of_the_box_can_be_lowered(rate_hz: float) -> None:
+    space = observer_space(rate_hz, EVERY)
+    sensor = replace(SENSOR, gyro_full_scale_deg_s=250)
+    for corner in (space.lower, space.upper):
+        lower(
+            FilterDesign(
+                filter="observer",
+                axes="both",
+                tilt="atan2",
+                mounting=Mounting.parse("+x+y+z"),
+                rate_hz=rate_hz,
+                sensor=sensor,
+                parameters=space.design_parameters(corner),
+            )
+        )
+    shown = [d.value(x) for d, x in zip(space.dimensions, space.upper, strict=True)]
+    key = {p.name: p.value for p in space.design_parameters(space.upper)}
+    assert key["kt_rad_m"] == shown[0] <= 12.0
+
+
 def test_what_cannot_be_tuned_is_refused() -> None:
     recording = recorded(duration_s=2.0)
     with pytest.raises(DesignError, match="kt is to be tuned and fixed"):
         problem(recording, free=("kt",), fixed=(FixedParameter(name="kt", value=0.1),))
-    with pytest.raises(DesignError, match="gyro_bias = 9"):
+    with pytest.raises(
+        DesignError, match=r"gyro-bias = 515.662 deg/s is outside \[-20, 20 deg/s\]"
+    ):
         problem(recording, fixed=(FixedParameter(name="gyro_bias", value=9.0),))
     narrow = SearchRange(name="kv", lowest=2.0, highest=1.0, is_log=True)
     with pytest.raises(DesignError, match="range of kv"):
@@ -132,10 +179,10 @@ def test_a_search_too_short_to_find_anything_leaves_the_default() -> None:
     recordings = tuple(recorded("random", seed=s, duration_s=6.0) for s in (1, 2))
     options = TuningOptions(filter="observer", particles=2, iterations=1, seed=2)
     p = archived(problem(*recordings), 16)
-    start = default_point(p.space, default_parameters())
+    start = default_point(p.space, OBSERVER_TUNER)
     expected = p.cost(start[np.newaxis])[0]
     assert expected < search(p, options, "qpso").cost
-    found = search_default(p, options, "qpso", default_parameters())
+    found = search_from(p, options, "qpso", start)
     np.testing.assert_array_equal(found.x, start)
     assert (found.cost, found.history[-1], found.evaluations) == (expected, expected, 5)
 
@@ -144,9 +191,10 @@ def test_the_default_is_a_point_of_every_search() -> None:
     free = ("kt", "start", "lead")
     narrow = SearchRange(name="kt", lowest=0.1, highest=1.0, is_log=True)
     p = problem(recorded(duration_s=2.0), free=free, ranges=(narrow,))
-    point = default_point(p.space, default_parameters())
+    point = default_point(p.space, OBSERVER_TUNER)
     np.testing.assert_allclose(point, [np.log(0.1), np.log(BY_NAME["start"].default), 0.0])
-    np.testing.assert_allclose(default_point(p.space, ())[:2], np.log([0.1**0.5, 0.5**0.5]))
+    bare = default_point(p.space, replace(OBSERVER_TUNER, default=tuple))
+    np.testing.assert_array_equal(bare, [*p.space.lower[:2], 0.0])
 
 
 def test_thresholds_of_rest_stay_near_their_defaults_where_nothing_moves_them() -> None:

@@ -47,6 +47,16 @@ def test_parts_of_a_single_recording_are_left_out():
     assert held_out.each_rad[1] == pytest.approx(second, rel=1e-9)
 
 
+def test_the_error_on_parts_is_the_error_of_the_whole_if_nothing_is_tuned(monkeypatch):
+    recording = recorded("random", duration_s=20.0)
+    p = problem(replace(recording, valid=np.arange(len(recording)) > 500))
+    x = np.log([0.5])
+    monkeypatch.setattr("hostkit.tuning.retuning.retune", lambda *_: np.tile(x, (5, 1)))
+    held_out = cross_validate(p, OPTIONS)
+    assert len(set(held_out.each_rad)) == 5
+    assert held_out.rms_rad == pytest.approx(p.rms_rad(x, 0), rel=1e-9)
+
+
 def test_weights_of_one_give_the_cost_and_of_two_a_recording_twice():
     p = problem(*RECORDINGS, axes="both")
     x = np.log(np.geomspace(0.05, 20.0, 7))[:, None]

@@ -104,11 +104,11 @@ def test_what_does_not_go_together_is_refused():
         return search_space(axes, 0.01, free, fixed, ranges)
 
     gate = FixedParameter(name="gate", value=0.1)
-    with pytest.raises(DesignError, match=r"gate is to be tuned and fixed at 0\.1"):
+    with pytest.raises(DesignError, match=r"gate is to be tuned and fixed at 0\.1 g"):
         space(free=("gate",), fixed=(gate,))
     with pytest.raises(DesignError, match="nothing to tune"):
         space(free=(), fixed=(FixedParameter(name="tau", value=1.0),))
-    with pytest.raises(DesignError, match=r"gate = 7 is outside \[0.001, 1\]"):
+    with pytest.raises(DesignError, match=r"gate = 7 g is outside \[0.001, 1 g\]"):
         space(fixed=(replace(gate, value=7.0),))
     with pytest.raises(DesignError, match="fixed for pitch"):
         space(fixed=(FixedParameter(name="gyro_bias", value=0.0, axis="pitch"),))

@@ -191,5 +191,5 @@ def test_what_cannot_be_tuned_is_refused() -> None:
         tune((recording, replace(recording, rate_hz=200.0)), TuningOptions())
     with pytest.raises(HostkitError, match="no optimiser"):
         tune((recording,), TuningOptions(optimiser="magic"))
-    with pytest.raises(RecordingError, match="eta holds for one rate"):
+    with pytest.raises(RecordingError, match="a design holds for one rate"):
         evaluate(design(rate_hz=50.0), recording)

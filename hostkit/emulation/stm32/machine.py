@@ -5,6 +5,7 @@ from hostkit.emulation.stm32.clocks import BY_PIN, BY_POWER
 from hostkit.emulation.stm32.core import FLASH_BYTES, Core, Outcome, Segments
 from hostkit.emulation.stm32.flash import STORE_BYTES, STORE_START, Store
 from hostkit.emulation.stm32.peripherals import OFFSET, Outside, Peripherals
+from hostkit.emulation.stm32.supply import power_again
 from hostkit.emulation.stm32.timeline import NEVER, TICK_HZ, BusError, Device
 from hostkit.emulation.stm32.usart import Sender
 from hostkit.emulation.virtual_sensor import VirtualSensor
@@ -20,7 +21,6 @@ LONGEST_WAIT_TICKS = TICK_HZ // 10_000
 """A program that polls looks at the clock so often at least."""
 POWER_UP_TICKS = TICK_HZ * 25 // 10_000
 """From the supply's return to the first instruction: t_RSTTEMPO of the data sheet."""
-SENSOR, PWR_MGMT_1, DEVICE_RESET = 0x68, 0x6B, 0x80
 
 
 class Machine:
@@ -131,23 +131,11 @@ class Machine:
         if by == BY_POWER:
             flags = BY_POWER | BY_PIN
             self._core.paint()
-            self._power_sensor()
+            power_again(self.sensor, self.time.now_ns)
             self.time.now += POWER_UP_TICKS
         self.time.stalled_until = 0
         self._start(flags)
         self._plan()
-
-    def _power_sensor(self) -> None:
-        """Take the sensor's supply away and give it back: it is as after a reset on demand."""
-        sensor = self.sensor
-        sensor.advance(self.time.now_ns)
-        sensor.stop()
-        sensor.nack_next(0)
-        sensor.hold_sda(0)
-        sensor.start(SENSOR, read=False)
-        sensor.write(PWR_MGMT_1)
-        sensor.write(DEVICE_RESET)
-        sensor.stop()
 
     # --- what the user sees ----------------------------------------------------------------------
 

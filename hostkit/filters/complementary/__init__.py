@@ -11,9 +11,6 @@ from hostkit.filters.complementary.lowering import LEAST_FORCE_G, lower
 from hostkit.filters.complementary.parameters import (
     BIAS_LIMIT_RAD_S,
     BY_NAME,
-    KINDS,
-    ParameterKind,
-    Settings,
     crossover_hz,
     eta_from_tau,
     parameter,
@@ -24,17 +21,15 @@ from hostkit.filters.complementary.parameters import (
 from hostkit.filters.complementary.response import response
 from hostkit.filters.complementary.run_time import (
     RUN_TIME,
-    RunTimeParameter,
     device_parameters,
     known_parameters,
     limits,
-    link_name,
     told_by_device,
     with_told,
     with_told_by_name,
 )
 from hostkit.filters.complementary.setting_words import setting_words
-from hostkit.filters.complementary.spec import BiasIntegral, ComplementarySpec, ForceGate
+from hostkit.filters.complementary.spec import ComplementarySpec
 from hostkit.filters.complementary.tilt import RATE_AXIS, measured_tilt_rad, measured_tilt_raw
 from hostkit.filters.filter import Filter, RunTime
 
@@ -42,41 +37,25 @@ __all__ = [
     "BIAS_LIMIT_RAD_S",
     "BY_NAME",
     "COMPLEMENTARY",
-    "KINDS",
     "LEAST_FORCE_G",
     "RATE_AXIS",
     "RUN_TIME",
-    "BiasIntegral",
-    "ComplementarySpec",
-    "ForceGate",
-    "ParameterKind",
-    "RunTimeParameter",
-    "Settings",
-    "calibrated",
     "crossover_hz",
-    "device_parameters",
     "eta_from_tau",
-    "facts",
-    "filter_context",
     "force_gate",
-    "known_parameters",
     "limits",
-    "link_name",
     "lower",
     "measured_tilt_rad",
     "measured_tilt_raw",
     "parameter",
     "parameters",
-    "response",
     "run_float",
     "run_integer",
-    "setting_words",
     "settings",
     "step_integer",
     "tau_from_eta",
     "told_by_device",
     "with_told",
-    "with_told_by_name",
 ]
 
 COMPLEMENTARY: Filter[ComplementarySpec] = Filter(

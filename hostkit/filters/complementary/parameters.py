@@ -212,8 +212,9 @@ def _value(design: FilterDesign, kind: ParameterKind, axis: Axis | None) -> floa
     if not found:
         return None
     if not (math.isfinite(found[0]) and kind.lowest <= found[0] <= kind.highest):
+        unit = "" if kind.unit == "1" else f" {kind.unit}"
         raise DesignError(
-            f"{key} = {found[0]} {kind.unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
+            f"{key} = {found[0]:g}{unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
         )
     return found[0]
 

@@ -8,11 +8,7 @@ from hostkit.filters.observer.float_model import run_float
 from hostkit.filters.observer.integer_model import run_integer, step_integer
 from hostkit.filters.observer.lowering import lower
 from hostkit.filters.observer.parameters import (
-    BIAS_LIMIT_RAD_S,
     BY_NAME,
-    KINDS,
-    SENSOR_AXES,
-    ParameterKind,
     default_parameters,
     parameter,
     parameters,
@@ -27,33 +23,22 @@ from hostkit.filters.observer.run_time import (
     with_told,
 )
 from hostkit.filters.observer.setting_words import setting_words
-from hostkit.filters.observer.settings import Settings, settings
+from hostkit.filters.observer.settings import settings
 from hostkit.filters.observer.spec import ObserverSpec
 from hostkit.filters.sensor_terms import take_sensor_terms
 
 __all__ = [
-    "BIAS_LIMIT_RAD_S",
     "BY_NAME",
-    "KINDS",
     "OBSERVER",
     "RUN_TIME",
-    "SENSOR_AXES",
-    "ObserverSpec",
-    "ParameterKind",
-    "Settings",
     "default_parameters",
     "device_limits",
-    "device_parameters",
-    "facts",
-    "filter_context",
-    "known_parameters",
     "lower",
     "parameter",
     "parameters",
     "response",
     "run_float",
     "run_integer",
-    "setting_words",
     "settings",
     "step_integer",
     "told_by_device",

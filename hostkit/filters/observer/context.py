@@ -8,7 +8,7 @@ from hostkit.filters.observer.integer_angles import LEAD_LIMIT
 from hostkit.filters.observer.integer_geometry import FIFTH, HALF_PER_G, SIXTH, TWENTY_FOURTH
 from hostkit.filters.observer.integer_model import CLIP_GAIN, START_LIMIT
 from hostkit.filters.observer.limits import FIRST_ROUNDS
-from hostkit.filters.observer.parameters import BY_NAME, SENSOR_AXES
+from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.filters.observer.run_time import (
     RUN_TIME,
     RunTimeParameter,
@@ -17,6 +17,7 @@ from hostkit.filters.observer.run_time import (
     words,
 )
 from hostkit.filters.observer.spec import ObserverFormats, ObserverSpec
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.literals import float32_text
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS

@@ -14,9 +14,10 @@ from hostkit.filters.observer.limits import (
     mean_shift,
     start_end,
 )
-from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, SENSOR_AXES
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S
 from hostkit.filters.observer.settings import Rest, Settings, settings
 from hostkit.filters.observer.spec import ObserverSpec
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.literals import float32_text
 from hostkit.records import FilterDesign
 from hostkit.sensors import SENSORS

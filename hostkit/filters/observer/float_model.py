@@ -9,7 +9,7 @@ calibrated, a step is::
     v <- v + a dt
     d  = kt (v_y, -v_x, 0) dt           a turn about an earth axis
     q <- (1, d / 2) * q                 renormalised to first order
-    b <- b - kb R(q)^T d
+    b <- b - kb R^T d                   with the R of the line of a
     v <- (1 - kv dt) v
 
 An error e of tilt lets gravity seem to be an acceleration g e. Where the true acceleration is left
@@ -24,10 +24,11 @@ believes of its integral: an acceleration that lasts less than 1 / kv hardly til
 
 Around that step stand four things that a design may leave out:
 
-- *Start.* The first sample's force is up. Then each correction has a share of the tilt that the
-  force shows, d += alpha / g (a_y, -a_x), with alpha falling as 1 / n, which is a mean that turns
-  with the body: alpha <- alpha - alpha^2 from 1/2 until it is below dt / start. The velocity keeps
-  1 - alpha of itself. After a rate that was clipped alpha is CLIP_GAIN again, if it is less.
+- *Start.* The first sample's force is up. Then q is also turned by a share of the tilt that the
+  force shows, alpha / g (a_y, -a_x), of which the bias learns nothing, with alpha falling as 1 / n,
+  which is a mean that turns with the body: alpha <- alpha - alpha^2 from 1/2 until it is below
+  dt / start. The velocity keeps 1 - alpha of itself, with the new alpha. After a rate that was
+  clipped alpha is CLIP_GAIN again, if it is less.
 - *Rest.* Running means of rate and force that no reading left for REST_TIME_S, and a mean rate
   that can be a bias, are rest: then the bias follows the rate, b <- b + rest_gain (w - b) dt,
   instead of the velocity. The first rest takes the mean rate for the bias and starts again.
@@ -59,6 +60,8 @@ from hostkit.filters.observer.limits import (
     REST_RATE_LIMIT_RAD_S,
     START_GAIN,
     START_LIMIT_RAD,
+    TOLD_SQUARE_LEAST,
+    TOLD_SQUARE_MOST,
     correction_limit_rad,
     mean_shift,
     rest_samples,
@@ -104,7 +107,8 @@ def run_float(
     rate_rad_s, force_g
         Angular rate and specific force (in g) in sensor axes, each of shape ``(N, 3)``.
     start
-        State before the first sample, shape ``(S,)``; without it the first sample loads.
+        State before the first sample, shape ``(S,)``; without it the first sample loads. An
+        orientation that no device can have counts as level.
 
     Returns
     -------
@@ -247,8 +251,10 @@ def _follow(mean: list[float], reading: list[float], weight: float) -> float:
 
 
 def _state_of(words: list[float]) -> _State:
+    square = sum(part * part for part in words[0:4])
+    is_possible = TOLD_SQUARE_LEAST <= square <= TOLD_SQUARE_MOST
     return _State(
-        quaternion=words[0:4],
+        quaternion=words[0:4] if is_possible else [1.0, 0.0, 0.0, 0.0],
         velocity=words[4:6],
         bias=words[6:9],
         rate_mean=words[9:12],

@@ -22,6 +22,7 @@ from hostkit.filters.observer.integer_geometry import (
     propagated,
     upright,
 )
+from hostkit.filters.observer.limits import TOLD_SQUARE_LEAST, TOLD_SQUARE_MOST
 from hostkit.filters.observer.spec import ObserverSpec
 
 IntArray = NDArray[np.int64]
@@ -31,6 +32,8 @@ XYZ = range(3)
 CLIP_GAIN = 2**26
 START_LIMIT = 2**24
 """Largest half-angle of the alignment in a sample, 26 fraction bits."""
+SQUARE_LEAST, SQUARE_MOST = round(TOLD_SQUARE_LEAST * 2**60), round(TOLD_SQUARE_MOST * 2**60)
+LEVEL = (2**30, 0, 0, 0)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -72,7 +75,8 @@ def run_integer(
     accel_count, gyro_count
         Counts in sensor axes, each of shape ``(N, 3)``.
     start
-        State before the first sample, shape ``(S,)``.
+        State before the first sample, shape ``(S,)``; words of 32 bits. An orientation that no
+        device can have counts as level.
 
     Returns
     -------
@@ -250,8 +254,9 @@ def _rows(spec: ObserverSpec, words: list[list[int]], turns: list[list[int]]) ->
 
 
 def _state_of(words: list[int]) -> _State:
+    square = sum(word * word for word in words[0:4])
     return _State(
-        quaternion=words[0:4],
+        quaternion=words[0:4] if SQUARE_LEAST <= square <= SQUARE_MOST else list(LEVEL),
         correction=words[4:6],
         bias=words[6:9],
         gyro_mean=words[9:12],

@@ -37,7 +37,12 @@ CLIP_GAIN: Final = 2.0**-5
 FIRST_FORCE_G: Final = 1.2
 """Largest specific force of the first sample that is believed, on each axis."""
 
-FIRST_ROUNDS = 6
+TOLD_SQUARE_LEAST: Final = 0.5
+TOLD_SQUARE_MOST: Final = 2.0
+"""Square of the length of an orientation that a state may begin with. Every step leaves 0.9 to 1;
+from above 5 the renormalisation would run away."""
+
+FIRST_ROUNDS: Final = 6
 """Renormalisations of the first orientation, whose length is 0.5 to 1.39."""
 
 

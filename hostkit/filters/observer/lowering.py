@@ -26,7 +26,7 @@ from hostkit.filters.observer.limits import (
     rest_samples,
     start_end,
 )
-from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME
 from hostkit.filters.observer.settings import Settings, settings
 from hostkit.filters.observer.spec import (
     ObserverFormats,
@@ -36,6 +36,7 @@ from hostkit.filters.observer.spec import (
     Triple,
 )
 from hostkit.filters.observer.state_words import state_words
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.fixedpoint import round_half_up
 from hostkit.records import AXES, FilterDesign
 from hostkit.sensors import SENSORS
@@ -62,7 +63,7 @@ def lower(design: FilterDesign) -> ObserverSpec:
     own, period_s = settings(design), design.period_s
     part = SENSORS[design.sensor.part]
     rad_s, m_s2 = part.rad_s_per_count(design.sensor), part.m_s2_per_count(design.sensor)
-    formats = _formats(design, 32768 * m_s2)
+    formats = _formats(design.period_s, 32768 * m_s2)
     _check_step(design, own, 32768 * rad_s)
     gyro = tuple((1.0 + s) * 0.5 * rad_s * period_s for s in own.calibration.gyro_scale)
     accel = tuple((1.0 + s) * m_s2 for s in own.calibration.accel_scale)
@@ -100,11 +101,11 @@ def lower(design: FilterDesign) -> ObserverSpec:
 def formats_of(design: FilterDesign) -> ObserverFormats:
     """Return the formats of a design, which need no parameter of it."""
     m_s2 = SENSORS[design.sensor.part].m_s2_per_count(design.sensor)
-    return _formats(design, 32768 * m_s2)
+    return _formats(design.period_s, 32768 * m_s2)
 
 
-def _formats(design: FilterDesign, full_scale_m_s2: float) -> ObserverFormats:
-    period_s, scale = design.period_s, BY_NAME["accel_scale"].highest
+def _formats(period_s: float, full_scale_m_s2: float) -> ObserverFormats:
+    scale = BY_NAME["accel_scale"].highest
     largest = (1.0 + scale) * (full_scale_m_s2 + BY_NAME["accel_offset"].highest)
     correction = math.floor(30.0 - math.log2(0.5 * correction_limit_rad(period_s)))
     gain_bits = math.floor(31.0 - math.log2(BY_NAME["kb"].highest * period_s))
@@ -125,6 +126,25 @@ def gain_bits(formats: ObserverFormats) -> tuple[int, int, int]:
 def gains_per_unit(period_s: float) -> tuple[float, float, float]:
     """Return what kt, kv and kb are multiplied with before they are words."""
     return 0.5 * period_s**2, period_s, period_s
+
+
+def largest_that_fits(name: str, period_s: float) -> float:
+    """Return the largest value of a parameter whose word has room for it at a sample period.
+
+    Parameters
+    ----------
+    name
+        Of a kind of parameter, such as ``kt``.
+    """
+    formats = _formats(period_s, STANDARD_GRAVITY_M_S2)
+    highest = BY_NAME[name].highest
+    if name == "kt":
+        unit = math.ldexp(gains_per_unit(period_s)[0], gain_bits(formats)[0])
+        return min(highest, (2.0**31 - 1.0) / unit)
+    if name == "rest_gain":
+        unit = math.ldexp(period_s, formats.bias - formats.rest_shift)
+        return min(highest, (2.0**30 - 1.0) / unit)
+    return highest
 
 
 def bias_turn(scale: float, period_s: float) -> float:

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from hostkit.errors import DesignError
+from hostkit.filters.sensor_terms import SENSOR_AXES, SensorAxis
 from hostkit.records import FilterDesign, Parameter
 from hostkit.units import DEG_PER_RAD, RAD_PER_DEG
 
 BIAS_LIMIT_RAD_S: Final = 20.0 * RAD_PER_DEG
 """Largest gyroscope bias: the zero-rate output that the MPU-6050's data sheet allows."""
-
-SensorAxis = Literal["x", "y", "z"]
-SENSOR_AXES: Final[tuple[SensorAxis, ...]] = ("x", "y", "z")
 
 ParameterName = Literal[
     "kt",
@@ -267,7 +265,8 @@ def checked_value(design: FilterDesign, kind: ParameterKind, key: str) -> float 
     if not found:
         return None
     if not (math.isfinite(found[0]) and kind.lowest <= found[0] <= kind.highest):
+        unit = "" if kind.unit == "1" else f" {kind.unit}"
         raise DesignError(
-            f"{key} = {found[0]} {kind.unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
+            f"{key} = {found[0]:g}{unit} is outside [{kind.lowest:g}, {kind.highest:g}]"
         )
     return found[0]

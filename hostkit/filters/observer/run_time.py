@@ -21,13 +21,12 @@ from hostkit.filters.observer.lowering import (
 )
 from hostkit.filters.observer.parameters import (
     BY_NAME,
-    SENSOR_AXES,
     ParameterName,
-    SensorAxis,
     parameter,
 )
 from hostkit.filters.observer.settings import DECAY_LIMIT, settings
 from hostkit.filters.observer.spec import ObserverSpec
+from hostkit.filters.sensor_terms import SENSOR_AXES, SensorAxis
 from hostkit.records import FilterDesign
 
 ROOM = 1.0 - 2.0**-22

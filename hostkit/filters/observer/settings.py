@@ -6,13 +6,11 @@ from hostkit.errors import DesignError
 from hostkit.filters.observer.parameters import (
     BY_NAME,
     KINDS,
-    SENSOR_AXES,
     ParameterName,
     checked_value,
 )
+from hostkit.filters.sensor_terms import SENSOR_AXES, SensorCorrection, Triple
 from hostkit.records import FilterDesign
-
-Triple = tuple[float, float, float]
 
 REST_NAMES: tuple[ParameterName, ...] = ("rest_rate", "rest_force", "rest_gain")
 DECAY_LIMIT = 0.5
@@ -37,19 +35,6 @@ class Rest:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Calibration:
-    """What is put right on the readings, sensor axes: (1 + scale) * (reading - offset).
-
-    The gyroscope's bias is where the filter's own estimate starts from.
-    """
-
-    gyro_bias_rad_s: Triple = (0.0, 0.0, 0.0)
-    gyro_scale: Triple = (0.0, 0.0, 0.0)
-    accel_offset_m_s2: Triple = (0.0, 0.0, 0.0)
-    accel_scale: Triple = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
     """The parameters of a design.
 
@@ -65,6 +50,8 @@ class Settings:
         Rate beyond which the gyroscope is clipped; None where that is not looked at.
     lead_s
         How far the angles are told ahead; negative for back.
+    calibration
+        What is put right on the readings; the bias is where the filter's own estimate starts from.
     """
 
     kt_rad_m: float
@@ -74,7 +61,7 @@ class Settings:
     rest: Rest | None
     clip_rate_rad_s: float | None
     lead_s: float
-    calibration: Calibration
+    calibration: SensorCorrection
 
 
 def settings(design: FilterDesign) -> Settings:
@@ -105,7 +92,7 @@ def settings(design: FilterDesign) -> Settings:
         rest=_rest(design),
         clip_rate_rad_s=_value(design, "clip_rate"),
         lead_s=_value(design, "lead") or 0.0,
-        calibration=Calibration(
+        calibration=SensorCorrection(
             gyro_bias_rad_s=_triple(design, "gyro_bias"),
             gyro_scale=_triple(design, "gyro_scale"),
             accel_offset_m_s2=_triple(design, "accel_offset"),

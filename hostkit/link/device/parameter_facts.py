@@ -55,13 +55,16 @@ class ParameterFacts:
         )
 
     def range_text(self) -> str:
-        """Return what it takes in words; empty where that is not known."""
+        """Return what it takes in words; empty where nothing of it is known."""
+        ends = (("at least ", self.lowest), ("at most ", self.highest))
         if self.lowest is None or self.highest is None:
-            return ""
+            return " and ".join(self._text(word, end) for word, end in ends if end is not None)
         but = f" but not {FORBIDDEN_SYSTEM}" if self.name == "SYS_ID" else ""
         number = "whole numbers from " if self.whole else ""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{number}{self.lowest:.7g} to {self.highest:.7g}{unit}{but}"
+        return f"{number}{self.lowest:.7g} to {self._text('', self.highest)}{but}"
+
+    def _text(self, word: str, value: float) -> str:
+        return f"{word}{value:.7g} {self.unit}".rstrip()
 
 
 _OWN: Final = (

@@ -27,7 +27,10 @@ def sensor_findings(recording: Recording) -> Iterator[Finding]:
     yield from _clipping(recording.specific_force_m_s2, "accel", NARROWEST_ACCEL_M_S2, "m/s^2")
     yield from _signs(recording)
     if recording.up_reference is None or not np.isfinite(recording.up_reference).any():
-        message = "there is no reference: a filter can be run on it, not tuned or scored"
+        message = (
+            "there is no reference: a filter can be run on it, not tuned or scored; hostkit smooth "
+            "finds one"
+        )
         yield Finding(kind="reference", message=message)
     still = standstill(recording)
     if still is not None:
@@ -72,7 +75,8 @@ def _at_rest(still: Standstill) -> Iterator[Finding]:
         message = (
             f"gyro {AXES[axis]} reads {bias_deg_s[axis]:+.3g} deg/s at rest (limit "
             f"{MAX_BIAS_DEG_S:g} deg/s, {still.windows} s at rest); subtract "
-            f"{still.bias_rad_s[axis]:+.5f} rad/s, or tune a filter that estimates the bias"
+            f"{still.bias_rad_s[axis]:+.5f} rad/s, let hostkit calibrate imu put it into the "
+            "design, or tune a filter that estimates it"
         )
         yield Finding(kind="bias", message=message)
     error = still.force_m_s2 / STANDARD_GRAVITY_M_S2 - 1.0
@@ -80,7 +84,7 @@ def _at_rest(still: Standstill) -> Iterator[Finding]:
         message = (
             f"the specific force at rest is {still.force_m_s2:.4g} m/s^2, {100.0 * error:+.2g} % "
             f"off gravity (limit {100.0 * MAX_FORCE_ERROR:g} %); calibrate offset and scale of "
-            "the accelerometer on its six faces"
+            "the accelerometer on its six faces (hostkit calibrate imu)"
         )
         yield Finding(kind="force", message=message)
     yield from _reference(still)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from hostkit.records import read_only
-from hostkit.tuning.complementary.problem import Problem
+from hostkit.tuning.complementary.laid_out import LaidOut
 from hostkit.tuning.kernel import ErrorStream
 
 Vector = NDArray[np.float64]
@@ -110,7 +110,7 @@ def tabulate(stream: ErrorStream, most_lags: int) -> CorrelationTable:
 class TabulatedProblem:
     """A problem whose cost comes from tables; in the order of `Problem.streams`."""
 
-    problem: Problem
+    problem: LaidOut
     tables: tuple[tuple[CorrelationTable, ...], ...]
 
     def cost(self, points: Vector) -> Vector:
@@ -126,7 +126,7 @@ class TabulatedProblem:
         return np.asarray(np.mean(errors, axis=(1, 2)))
 
 
-def tabulated(problem: Problem, evaluations: int) -> TabulatedProblem | None:
+def tabulated(problem: LaidOut, evaluations: int) -> TabulatedProblem | None:
     """Return the problem in tables, or None where they do not hold or do not pay.
 
     They hold for the RMSE with eta alone where every sample is scored, and pay where a long
@@ -145,7 +145,7 @@ def tabulated(problem: Problem, evaluations: int) -> TabulatedProblem | None:
     return TabulatedProblem(problem=problem, tables=tuple(tables))
 
 
-def _pays(problem: Problem, evaluations: int) -> bool:
+def _pays(problem: LaidOut, evaluations: int) -> bool:
     """Estimate both ways; the lags of an evaluation are the mean over log tau."""
     streams = [stream for recording in problem.streams for stream in recording]
     lower, upper = problem.space.lower[0], problem.space.upper[0]

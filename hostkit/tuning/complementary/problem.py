@@ -10,6 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from hostkit.attitude import inclination_rad, up_from_tilt
 from hostkit.records import Objective
+from hostkit.tuning.complementary.quick_search import quick_search
 from hostkit.tuning.complementary.space import SearchSpace
 from hostkit.tuning.kernel import (
     Candidates,
@@ -20,6 +21,7 @@ from hostkit.tuning.kernel import (
     kernel,
     scored_mask,
 )
+from hostkit.tuning.task import Search, SearchPlan
 
 Vector = NDArray[np.float64]
 
@@ -65,6 +67,10 @@ class Problem:
         They decide where the recordings do not: shape ``(P,)``.
         """
         return np.ones(len(points))
+
+    def quick_search(self, plan: SearchPlan) -> Search | None:
+        """Return a search in tables or in compiled code, where it holds and pays."""
+        return quick_search(self, plan)
 
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points, rad: the mean over recordings and axes of RMSE or MAE.

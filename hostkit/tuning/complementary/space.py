@@ -14,6 +14,7 @@ from hostkit.tuning.dimension import (
     Dimension,
     FixedParameter,
     FreeName,
+    Limits,
     SearchRange,
     check_fixed,
     check_range,
@@ -158,7 +159,8 @@ def search_space(
 
 
 def _dimensions(search: SearchRange, axes: tuple[Axis, ...]) -> list[Dimension]:
-    check_range(search, *_limits(search.name))
+    limits = _limits(search.name)
+    check_range(search, limits)
     low, high = search.lowest, search.highest
     if search.is_log:
         low, high = math.log(low), math.log(high)
@@ -170,24 +172,30 @@ def _dimensions(search: SearchRange, axes: tuple[Axis, ...]) -> list[Dimension]:
             lower=low,
             upper=high,
             is_log=search.is_log,
-            shown_unit="s" if kind is None else kind.shown_unit,
-            shown_per_unit=1.0 if kind is None else kind.shown_per_unit,
+            shown_unit=limits.shown_unit,
+            shown_per_unit=limits.shown_per_unit,
         )
         for axis in (axes if kind is not None and kind.per_axis else (None,))
     ]
 
 
-def _limits(name: FreeName) -> tuple[float, float]:
+def _limits(name: FreeName) -> Limits:
     if name == "tau":
-        return 1e-6, 1e6
-    return BY_NAME[name].lowest, BY_NAME[name].highest
+        return Limits(lowest=1e-6, highest=1e6, shown_unit="s")
+    kind = BY_NAME[name]
+    return Limits(
+        lowest=kind.lowest,
+        highest=kind.highest,
+        shown_unit=kind.shown_unit,
+        shown_per_unit=kind.shown_per_unit,
+    )
 
 
 def _check(
     axes: AxisChoice, names: tuple[FreeName, ...], fixed: tuple[FixedParameter, ...]
 ) -> None:
     for one in fixed:
-        check_fixed(one, names, *_limits(one.name))
+        check_fixed(one, names, _limits(one.name))
         if one.axis is not None and one.axis not in AXES[axes]:
             raise DesignError(f"{one.name} is fixed for {one.axis}, which the design has not")
     if not names:

@@ -22,7 +22,8 @@ from hostkit.filters.observer.limits import (
     mean_shift,
     rest_samples,
 )
-from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME, SENSOR_AXES
+from hostkit.filters.observer.parameters import BIAS_LIMIT_RAD_S, BY_NAME
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.mounting import Mounting
 from hostkit.records import Objective
 from hostkit.tuning.evaluation import Quantity

@@ -17,6 +17,7 @@ from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.observer.kernel import Kernel, Terms, candidate_table
 from hostkit.tuning.observer.space import ObserverSpace
+from hostkit.tuning.task import Search, SearchPlan
 from hostkit.tuning.track import Track
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
@@ -88,6 +89,10 @@ class ObserverProblem:
         sums, counts = self.block_sums(points, 1), self.block_counts(1)
         cost = self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1))
         return np.asarray(cost * self.preference(points))
+
+    def quick_search(self, plan: SearchPlan) -> Search | None:
+        """Return none: points are run one beside the other, and that is all."""
+        return None
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE or MAE of sums over so many samples."""

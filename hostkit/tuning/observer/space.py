@@ -8,18 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.errors import DesignError
+from hostkit.filters.observer.lowering import largest_that_fits
 from hostkit.filters.observer.parameters import (
     BY_NAME,
     KINDS,
-    SENSOR_AXES,
     ParameterKind,
     parameters,
 )
+from hostkit.filters.sensor_terms import SENSOR_AXES
 from hostkit.records import Parameter
 from hostkit.tuning.dimension import (
     Dimension,
     FixedParameter,
     FreeName,
+    Limits,
     SearchRange,
     check_fixed,
     check_range,
@@ -84,7 +86,8 @@ class ObserverSpace:
         columns = {p.name: np.full(len(points), p.value) for p in self.held}
         for i, dimension in enumerate(self.dimensions):
             column = np.exp(points[:, i]) if dimension.is_log else points[:, i]
-            columns[parameter_key(dimension.name, dimension.axis)] = column
+            key = parameter_key(dimension.name, dimension.axis)
+            columns[key] = np.minimum(column, dimension.largest)
         return columns
 
     def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
@@ -116,7 +119,7 @@ def observer_space(
         possible.
     """
     for one in fixed:
-        check_fixed(one, free, BY_NAME[one.name].lowest, BY_NAME[one.name].highest)
+        check_fixed(one, free, _limits(BY_NAME[one.name]))
     if not free:
         raise DesignError("every parameter is fixed; there is nothing to tune")
     own = {**RANGE_BY_NAME, **{r.name: r for r in ranges}}
@@ -132,7 +135,7 @@ def parameter_key(name: FreeName, axis: str | None) -> str:
 
 def _dimensions(search: SearchRange, rate_hz: float) -> list[Dimension]:
     kind = BY_NAME[search.name]
-    check_range(search, kind.lowest, kind.highest)
+    check_range(search, _limits(kind))
     low, high = search.lowest, min(search.highest, _highest(kind, rate_hz))
     if search.is_log:
         low, high = math.log(low), math.log(high)
@@ -143,11 +146,21 @@ def _dimensions(search: SearchRange, rate_hz: float) -> list[Dimension]:
             lower=low,
             upper=high,
             is_log=search.is_log,
+            largest=largest_that_fits(search.name, 1.0 / rate_hz),
             shown_unit=kind.shown_unit,
             shown_per_unit=kind.shown_per_unit,
         )
         for axis in (SENSOR_AXES if kind.per_axis else (None,))
     ]
+
+
+def _limits(kind: ParameterKind) -> Limits:
+    return Limits(
+        lowest=kind.lowest,
+        highest=kind.highest,
+        shown_unit=kind.shown_unit,
+        shown_per_unit=kind.shown_per_unit,
+    )
 
 
 def _highest(kind: ParameterKind, rate_hz: float) -> float:
