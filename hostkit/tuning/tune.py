@@ -106,7 +106,10 @@ def _tune(
         held_out=held_out,
         intervals=intervals(problem.space.dimensions, swarm.x, again),
         profiles=walked,
-        remarks=remarks(problem, swarm.x, swarm.cost, walked),
+        remarks=(
+            *remarks(problem, swarm.x, swarm.cost, walked),
+            *_beside_default(problem, options, held_out),
+        ),
     )
 
 
@@ -116,6 +119,22 @@ def _search(problem: Task, options: TuningOptions, optimiser: str) -> SwarmResul
         return search(problem, options, optimiser)
     start = default_point(problem.space, TUNERS[options.filter])
     return search_from(problem, options, optimiser, start)
+
+
+def _beside_default(
+    problem: Task, options: TuningOptions, held_out: HeldOut | None
+) -> tuple[str, ...]:
+    """Say where the default, which was tuned on none of the recordings, does as well."""
+    if held_out is None or not problem.is_dear:
+        return ()
+    start = default_point(problem.space, TUNERS[options.filter])
+    rms = float(np.mean([problem.rms_rad(start, i) for i in range(len(problem.lengths))]))
+    if not rms <= held_out.rms_rad:
+        return ()
+    return (
+        f"the defaults, {rms * DEG_PER_RAD:.4f} deg, do as well as a tuned design on recordings "
+        "that were left out: these recordings do not call for tuning",
+    )
 
 
 def tuning_task(recordings: tuple[AnyRecording, ...], options: TuningOptions, folder: Path) -> Task:

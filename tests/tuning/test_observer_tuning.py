@@ -11,7 +11,7 @@ from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.simulation import SensorErrors
-from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
+from hostkit.tuning import FixedParameter, SearchRange, TuningOptions, tune
 from hostkit.tuning.archive import archived
 from hostkit.tuning.kernel.library import library
 from hostkit.tuning.observer import OBSERVER_TUNER, RANGES, SOURCES, observer_problem
@@ -185,6 +185,17 @@ def test_a_search_too_short_to_find_anything_leaves_the_default() -> None:
     found = search_from(p, options, "qpso", start)
     np.testing.assert_array_equal(found.x, start)
     assert (found.cost, found.history[-1], found.evaluations) == (expected, expected, 5)
+
+
+def test_where_tuning_brings_nothing_tune_says_so() -> None:
+    recordings = tuple(recorded("random", seed=s, duration_s=6.0) for s in (1, 2))
+    short = TuningOptions(
+        filter="observer", sensor=SENSOR, particles=2, iterations=1, seed=2, resamples=0
+    )
+    assert any("the defaults, 1.1" in r for r in tune(recordings, short).remarks)
+    tuned = tune(recordings, replace(short, particles=16, iterations=30))
+    assert tuned.held_out.rms_rad < np.radians(1.1)
+    assert not any("the defaults" in r for r in tuned.remarks)
 
 
 def test_the_default_is_a_point_of_every_search() -> None:
