@@ -5,7 +5,7 @@ from designs import design
 
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AxisChoice, Objective, TiltMethod
+from hostkit.records import AxisChoice, FilterDesign, Objective, TiltMethod
 from hostkit.simulation import SensorErrors, simulate
 from hostkit.tuning.complementary.objective import Layout, prepare
 from hostkit.tuning.complementary.problem import Problem
@@ -38,6 +38,18 @@ def recorded(
         sensor=SENSOR,
         errors=SensorErrors(vibration_m_s2=2.0) if errors is None else errors,
         rng=np.random.default_rng(seed),
+    )
+
+
+def swept(design_: FilterDesign, duration_s: float = 4.0) -> Recording:
+    """Return a sweep as the sensor of a design reads it, at its rate."""
+    return simulate(
+        "sine-sweep",
+        duration_s=duration_s,
+        rate_hz=design_.rate_hz,
+        sensor=design_.sensor,
+        errors=SensorErrors(),
+        rng=np.random.default_rng(8),
     )
 
 

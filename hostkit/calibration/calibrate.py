@@ -7,7 +7,7 @@ import numpy as np
 from hostkit.calibration.accelerometer import AccelFit, fit_accelerometer
 from hostkit.calibration.coverage import missing_faces
 from hostkit.calibration.gyroscope import GyroFit, fit_gyroscope
-from hostkit.calibration.poses import Pose, find_poses
+from hostkit.calibration.poses import MAX_RATE_RAD_S, Pose, find_poses
 from hostkit.calibration.rest_rate import rest_rate
 from hostkit.calibration.turn_model import Problem
 from hostkit.calibration.turns import Turn, find_turns
@@ -97,7 +97,8 @@ def calibrate(
         names = ", ".join(recording.name for recording in recordings)
         raise CalibrationError(
             f"the sensor is never at rest for a second in {names}; put it down, or hold it against "
-            "something firm, for three seconds or more in each position"
+            "something firm, for three seconds or more in each position; a mean rate above "
+            f"{MAX_RATE_RAD_S * DEG_PER_RAD:g} deg/s is taken for a turn"
         )
     force = np.stack([pose.force_m_s2 for pose in poses])
     accel = fit_accelerometer(force, gravity_m_s2)

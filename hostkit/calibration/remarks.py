@@ -28,12 +28,12 @@ def require_accelerometer(calibration: Calibration) -> None:
     accel = calibration.accel
     if accel.determined:
         return
-    faces = " and none with ".join(calibration.missing)
+    faces = " and ".join(calibration.missing)
     worst = float(accel.scale_error.max())
     error = f"{100.0 * worst:.2g} %" if np.isfinite(worst) else "without bound"
     raise CalibrationError(
-        f"{len(calibration.poses)} poses do not determine the accelerometer: there is none, or too "
-        f"few, with {faces}. The standard error of a scale would be {error}; the limit is "
+        f"{len(calibration.poses)} poses do not determine the accelerometer: there are none, or "
+        f"too few, with {faces}. The standard error of a scale would be {error}; the limit is "
         f"{100.0 * ACCEL_SCALE_ERROR_LIMIT:g} %. Record the sensor at rest like that too, or leave "
         "the accelerometer out with --sensors gyro"
     )

@@ -10,7 +10,7 @@ from hostkit.calibration import Calibration, rms, tilt_worth, to_record
 from hostkit.calibration import calibrate as run_calibration
 from hostkit.calibration.document import to_document
 from hostkit.calibration.remarks import remarks, require_accelerometer
-from hostkit.cli.inputs import DESIGN, JSON, RECORDINGS, finite, read_design, say
+from hostkit.cli.inputs import DESIGN, JSON, RECORDINGS, REPORT, finite, read_design, say
 from hostkit.cli.output import emit_json
 from hostkit.design_file import digest, save_design
 from hostkit.filters import FILTERS
@@ -67,13 +67,7 @@ def calibrate() -> None:
     show_default=True,
     help="What to put into the design.",
 )
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with plots.",
-)
+@REPORT
 @JSON
 def imu(
     design_file: Path,

@@ -5,14 +5,23 @@ from pathlib import Path
 import click
 
 from hostkit.cli.compare_output import show
-from hostkit.cli.inputs import JSON, RECORDINGS, finite, read_design, read_recording, say
+from hostkit.cli.inputs import (
+    JSON,
+    RECORDINGS,
+    REPORT,
+    axes_option,
+    finite,
+    mounting_option,
+    read_design,
+    read_recording,
+    say,
+)
 from hostkit.cli.output import emit_json
-from hostkit.cli.tune import parse_mounting
 from hostkit.comparison import BUDGET, PEERS, USUAL, CompareOptions, costs, to_document
 from hostkit.comparison import compare as run_comparison
 from hostkit.errors import HostkitError
 from hostkit.mounting import Mounting
-from hostkit.records import AXES, AxisChoice
+from hostkit.records import AxisChoice, FilterDesign
 
 MS_PER_S = 1e3
 
@@ -30,6 +39,21 @@ def parse_peers(context: click.Context, option: click.Parameter, text: str) -> t
     return () if names == ("none",) else names
 
 
+def _check_own(design: FilterDesign | None, axes: AxisChoice, mounting: Mounting) -> None:
+    """Refuse axes or a mounting beside a design that has others: it would be scored by its own."""
+    if design is None:
+        return
+    pairs = (("axes", axes, design.axes), ("mounting", mounting, design.mounting))
+    context = click.get_current_context()
+    for name, asked, own in pairs:
+        source = context.get_parameter_source(name)
+        if source is click.core.ParameterSource.COMMANDLINE and asked != own:
+            raise click.UsageError(
+                f"--{name} {asked}: the design has {own}, and is compared as it is; leave the "
+                "option out, or take another design"
+            )
+
+
 @click.command("compare")
 @RECORDINGS
 @click.option(
@@ -39,21 +63,8 @@ def parse_peers(context: click.Context, option: click.Parameter, text: str) -> t
     metavar="FILE",
     help="Compare this design; without one, hostkit's filters by themselves and tuned.",
 )
-@click.option(
-    "--axes",
-    type=click.Choice(tuple(AXES)),
-    default="both",
-    show_default=True,
-    help="Score one angle, or the inclination; a design brings its own.",
-)
-@click.option(
-    "--mounting",
-    default="+x+y+z",
-    show_default=True,
-    callback=parse_mounting,
-    metavar="AXES",
-    help="Body x, y, z as signed sensor axes; a design brings its own.",
-)
+@axes_option("Score one angle, or the inclination; a design brings its own.")
+@mounting_option("Body x, y, z as signed sensor axes; a design brings its own.")
 @click.option(
     "--peers",
     default=",".join(USUAL),
@@ -104,13 +115,7 @@ def parse_peers(context: click.Context, option: click.Parameter, text: str) -> t
 )
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=1, show_default=True)
 @click.option("--jobs", type=click.IntRange(1), default=1, show_default=True)
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with a chart.",
-)
+@REPORT
 @JSON
 def compare(
     recording_files: tuple[Path, ...],
@@ -140,8 +145,10 @@ def compare(
       hostkit compare flight.csv --peers vqf-online,imufusion --report compare.html
     """
     try:
+        design = None if design_file is None else read_design(design_file)
+        _check_own(design, axes, mounting)
         options = CompareOptions(
-            design=None if design_file is None else read_design(design_file),
+            design=design,
             axes=axes,
             mounting=mounting,
             peers=peers,

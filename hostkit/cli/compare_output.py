@@ -4,7 +4,7 @@ import math
 
 import click
 
-from hostkit.comparison import Comparison, Cost, Row
+from hostkit.comparison import Comparison, Cost, Row, cost_of
 
 
 def show(comparison: Comparison, costs: tuple[Cost, ...]) -> None:
@@ -38,12 +38,12 @@ def _line(row: Row, costs: tuple[Cost, ...], width: int) -> str:
         if held_out is not None
         else f"{'-':>10}{'-':>8}"
     )
-    own = [c.ns_per_sample for c in costs if c.name == row.name and c.ns_per_sample is not None]
+    own = cost_of(row, costs)
     tried = str(row.evaluations) if row.evaluations else "-"
     return (
         f"{row.title:<{width}}  {row.settings:<9}{math.degrees(row.mean_rad):8.3f}"
         f"{math.degrees(row.worst_rad):8.2f}{left}{tried:>7}"
-        f"{f'{min(own):.0f}' if own else '-':>11}"
+        f"{'-' if own is None else f'{own:.0f}':>11}"
     )
 
 

@@ -5,42 +5,30 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import JSON, RECORDINGS, read_recording, say
+from hostkit.cli.inputs import (
+    JSON,
+    RECORDINGS,
+    REPORT,
+    axes_option,
+    mounting_option,
+    read_recording,
+    say,
+)
 from hostkit.cli.output import emit_json
-from hostkit.cli.tune import parse_mounting
 from hostkit.diagnosis import Diagnosis, allan_document, findings, to_document
 from hostkit.diagnosis import diagnose as run_diagnosis
 from hostkit.errors import ToolMissingError
 from hostkit.files import write_aside
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
-from hostkit.records import AXES, AxisChoice
+from hostkit.records import AxisChoice
 
 
 @click.command("diagnose")
 @RECORDINGS
-@click.option(
-    "--axes",
-    type=click.Choice(tuple(AXES)),
-    default="both",
-    show_default=True,
-    help="Angles the filter is to give.",
-)
-@click.option(
-    "--mounting",
-    default="+x+y+z",
-    show_default=True,
-    callback=parse_mounting,
-    metavar="AXES",
-    help="Body x, y, z as signed sensor axes; +z+x+y makes sensor z the roll axis.",
-)
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with plots.",
-)
+@axes_option("Angles the filter is to give.")
+@mounting_option("Body x, y, z as signed sensor axes; +z+x+y makes sensor z the roll axis.")
+@REPORT
 @click.option(
     "--allan-out",
     "allan_file",

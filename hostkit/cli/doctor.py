@@ -13,6 +13,9 @@ from hostkit.tuning.kernel import NativeKernel, kernel
 PACKAGES = (
     ("matplotlib", "reports", "report"),
     ("allantools", "Allan deviations", "allan"),
+    ("vqf", "comparing with VQF", "compare"),
+    ("imufusion", "comparing with Fusion", "compare"),
+    ("ahrs", "comparing with Mahony's and Madgwick's filters", "compare"),
     ("distributed", "fleets on a Dask cluster", "fleet"),
     ("h5py", "importing HDF5", "import"),
     ("mcap-ros2-support", "importing MCAP", "import"),

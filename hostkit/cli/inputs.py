@@ -1,13 +1,20 @@
 """Reading what the command line names: recordings with their sanity card, and designs."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
 from hostkit.design_file import digest, edited_by_hand, load_design
+from hostkit.errors import DesignError
+from hostkit.mounting import Mounting
 from hostkit.recordings import LargeRecording, Recording, check, load, open_large
-from hostkit.records import FilterDesign
+from hostkit.records import AXES, FilterDesign
+
+Option = Callable[[Callable[..., Any]], Callable[..., Any]]
+"""What click.option makes: a decorator of a command."""
 
 RECORDINGS = click.argument(
     "recording_files",
@@ -28,6 +35,40 @@ DESIGN = click.argument(
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+REPORT = click.option(
+    "--report",
+    "report_file",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE.html",
+    help="Also write a report with plots.",
+)
+
+
+def axes_option(text: str) -> Option:
+    """Return the option for the angles that a filter gives, with its help."""
+    return click.option(
+        "--axes", type=click.Choice(tuple(AXES)), default="both", show_default=True, help=text
+    )
+
+
+def parse_mounting(context: click.Context, option: click.Parameter, text: str) -> Mounting:
+    """Read a mounting; what is wrong with it is wrong use."""
+    try:
+        return Mounting.parse(text)
+    except DesignError as error:
+        raise click.BadParameter(str(error)) from error
+
+
+def mounting_option(text: str) -> Option:
+    """Return the option for how the sensor sits in the body, with its help."""
+    return click.option(
+        "--mounting",
+        default="+x+y+z",
+        show_default=True,
+        callback=parse_mounting,
+        metavar="AXES",
+        help=text,
+    )
 
 
 def finite(context: click.Context, option: click.Parameter, value: float | None) -> float | None:

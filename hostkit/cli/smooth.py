@@ -4,7 +4,16 @@ from pathlib import Path
 
 import click
 
-from hostkit.cli.inputs import JSON, RECORDINGS, finite, read_design, read_recording, say
+from hostkit.cli.inputs import (
+    JSON,
+    RECORDINGS,
+    REPORT,
+    finite,
+    parse_mounting,
+    read_design,
+    read_recording,
+    say,
+)
 from hostkit.cli.output import emit_json
 from hostkit.cli.smooth_output import (
     SmoothedFile,
@@ -14,7 +23,6 @@ from hostkit.cli.smooth_output import (
     smoothed_document,
     trained_document,
 )
-from hostkit.cli.tune import parse_mounting
 from hostkit.mounting import Mounting
 from hostkit.recordings import Recording, require_suffix
 from hostkit.records import AXES, AxisChoice, FilterDesign
@@ -85,13 +93,7 @@ from hostkit.smoothing.settings import HIGHEST_LEAD_S, SmootherSettings
     help="--train: settings that each search tries.",
 )
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=1, show_default=True)
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with plots.",
-)
+@REPORT
 @JSON
 def smooth(
     recording_files: tuple[Path, ...],

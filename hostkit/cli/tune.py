@@ -7,7 +7,15 @@ import click
 
 from hostkit.cli.fleet import fleet_options
 from hostkit.cli.fleet import run as run_fleet
-from hostkit.cli.inputs import JSON, RECORDINGS_OR_NONE, read_for_tuning, say
+from hostkit.cli.inputs import (
+    JSON,
+    RECORDINGS_OR_NONE,
+    REPORT,
+    axes_option,
+    mounting_option,
+    read_for_tuning,
+    say,
+)
 from hostkit.cli.output import emit_json
 from hostkit.cli.parameter_options import AUTO_FILTER, FILTER, FIX, FREE, RANGE
 from hostkit.cli.tune_filter import with_filter
@@ -18,7 +26,7 @@ from hostkit.fleet import FleetOptions, GroupBy, SensorWish
 from hostkit.mounting import Mounting
 from hostkit.optimisers import OPTIMISERS
 from hostkit.provenance import CalibrationRecord
-from hostkit.records import AXES, OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
+from hostkit.records import OBJECTIVES, TILT_METHODS, AxisChoice, Objective, TiltMethod
 from hostkit.sensors import SENSORS
 from hostkit.tuning import AUTO, FixedParameter, FreeName, SearchRange, TuningOptions, sensor_config
 from hostkit.tuning import tune as run_tuning
@@ -28,14 +36,6 @@ from hostkit.tuning.search import ONE_PARAMETER
 PART = SENSORS["mpu6050"]
 
 DESIGN_FILE, FLEET_FOLDER = Path("design.json"), Path("designs")
-
-
-def parse_mounting(context: click.Context, option: click.Parameter, text: str) -> Mounting:
-    """Read a mounting; what is wrong with it is wrong use."""
-    try:
-        return Mounting.parse(text)
-    except DesignError as error:
-        raise click.BadParameter(str(error)) from error
 
 
 @click.command("tune")
@@ -56,21 +56,8 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     help="Tune one design for each device of DIR instead.",
 )
 @FILTER
-@click.option(
-    "--axes",
-    type=click.Choice(tuple(AXES)),
-    default="both",
-    show_default=True,
-    help="Angles the filter gives.",
-)
-@click.option(
-    "--mounting",
-    default="+x+y+z",
-    show_default=True,
-    callback=parse_mounting,
-    metavar="AXES",
-    help="Body x, y, z as signed sensor axes; +z+x+y makes sensor z the roll axis.",
-)
+@axes_option("Angles the filter gives.")
+@mounting_option("Body x, y, z as signed sensor axes; +z+x+y makes sensor z the roll axis.")
 @click.option(
     "--tilt",
     type=click.Choice(TILT_METHODS),
@@ -147,13 +134,7 @@ def parse_mounting(context: click.Context, option: click.Parameter, text: str) -
     type=click.Choice([str(lp.setting) for lp in PART.low_passes]),
     help="Setting of the sensor's low-pass filter; by default from the rate.",
 )
-@click.option(
-    "--report",
-    "report_file",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE.html",
-    help="Also write a report with plots.",
-)
+@REPORT
 @fleet_options
 @JSON
 def tune(

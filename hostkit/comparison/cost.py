@@ -12,6 +12,7 @@ from hostkit.comparison.generated import generated_filter
 from hostkit.comparison.options import CompareOptions
 from hostkit.comparison.peer import Peer
 from hostkit.comparison.peers import chosen_peers
+from hostkit.comparison.row import Row
 from hostkit.errors import HostkitError
 from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
@@ -46,6 +47,8 @@ class Cost:
         Of the filter.
     timed
         What the time was spent in.
+    arithmetic
+        Of the generated C; None for a peer.
     ns_per_sample
         Shortest time of several turns; None where it could not be measured.
     reason
@@ -55,6 +58,7 @@ class Cost:
     name: str
     title: str
     timed: str
+    arithmetic: Arithmetic | None = None
     ns_per_sample: float | None
     reason: str = ""
 
@@ -66,6 +70,7 @@ class _Contender:
     timed: str
     samples: int
     action: Action | None
+    arithmetic: Arithmetic | None = None
     reason: str = ""
 
 
@@ -96,11 +101,21 @@ def costs(
             name=one.name,
             title=one.title,
             timed=one.timed,
+            arithmetic=one.arithmetic,
             ns_per_sample=seconds[id(one)] / one.samples * 1e9 if id(one) in seconds else None,
             reason=one.reason,
         )
         for one in contenders
     )
+
+
+def cost_of(row: Row, found: tuple[Cost, ...]) -> float | None:
+    """Return nanoseconds of an update of a row's filter, in the arithmetic that was scored."""
+    arithmetic: Arithmetic | None = None
+    if row.origin == "hostkit":
+        arithmetic = "fixed" if row.settings == "design" else "float"
+    own = (c for c in found if c.name == row.name and c.arithmetic == arithmetic)
+    return min((c.ns_per_sample for c in own if c.ns_per_sample is not None), default=None)
 
 
 def least_seconds(actions: Sequence[Action], clock: Clock) -> tuple[float, ...]:
@@ -171,7 +186,14 @@ def _generated(
         (f"{timed}, update and angles", built.updates_and_angles()),
     )
     return tuple(
-        _Contender(name=design.filter, title=title, timed=text, samples=len(counts), action=action)
+        _Contender(
+            name=design.filter,
+            title=title,
+            timed=text,
+            samples=len(counts),
+            action=action,
+            arithmetic=arithmetic,
+        )
         for text, action in pairs
     )
 

@@ -109,7 +109,8 @@ def package(name: str, needed: str) -> ModuleType:
         module = import_module(name)
     except ImportError as error:
         raise ToolMissingError(
-            f"{name} is not installed; it is for hostkit compare: pip install 'hostkit[compare]'"
+            f"{name.partition('.')[0]} is not installed; it is for hostkit compare: "
+            "pip install 'hostkit[compare]'"
         ) from error
     if not hasattr(module, needed):
         raise ToolMissingError(

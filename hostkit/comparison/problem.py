@@ -1,6 +1,5 @@
 """A peer as a problem that hostkit's own search and cross-validation can work on."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -16,7 +15,8 @@ from hostkit.mounting import Mounting
 from hostkit.records import Objective
 from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
-from hostkit.tuning.task import Search, SearchPlan
+from hostkit.tuning.task import Search, SearchPlan, mean_error, whole_cost
+from hostkit.tuning.track import scored_in_blocks, scored_rms_rad
 
 Vector = NDArray[np.float64]
 
@@ -80,17 +80,15 @@ class PeerProblem:
 
     def each_rms_rad(self, values: tuple[float, ...]) -> Vector:
         """Return the RMSE of every recording, shape ``(R,)``."""
-        each = []
-        for i, one in enumerate(self.readings):
-            deviation = self.deviation_rad(values, i)[one.track.scored]
-            each.append(math.sqrt(float(np.mean(deviation**2))))
+        each = [
+            scored_rms_rad(one.track, self.deviation_rad(values, i), 0, None)
+            for i, one in enumerate(self.readings)
+        ]
         return np.array(each)
 
     def cost(self, points: Vector) -> Vector:
         """Return the cost of points of shape ``(P, D)``, rad: shape ``(P,)``."""
-        sums, counts = self.block_sums(points, 1), self.block_counts(1)
-        cost = self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1))
-        return np.asarray(cost * self.preference(points))
+        return whole_cost(self, self.block_sums(points, 1)[:, :, 0], points)
 
     def preference(self, points: Vector) -> Vector:
         """Return the factors, 1 or more, that hold points of shape ``(P, D)`` to what is usual."""
@@ -102,8 +100,7 @@ class PeerProblem:
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE of sums over so many samples."""
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(np.sqrt(sums / counts))
+        return mean_error(self.objective, sums, counts)
 
     def block_sums(self, points: Vector, blocks: int) -> Vector:
         """Return sums of squares in blocks, shape ``(R, 1, blocks, P)``."""
@@ -118,19 +115,12 @@ class PeerProblem:
 
     def block_counts(self, blocks: int) -> Vector:
         """Return how many samples are scored in each block, shape ``(R, 1, blocks)``."""
-        counts = [
-            [int(one.track.scored[a:b].sum()) for a, b in pairwise(edges(len(one.track), blocks))]
-            for one in self.readings
-        ]
-        return np.array(counts, dtype=np.float64)[:, np.newaxis]
+        return scored_in_blocks(tuple(one.track for one in self.readings), blocks)
 
     def rms_rad(self, x: Vector, recording: int, begin: int = 0, end: int | None = None) -> float:
         """Return the RMSE of one point on one recording, or on a part of it."""
-        counted = np.zeros(self.lengths[recording], dtype=np.bool_)
-        counted[begin:end] = True
-        scored = self.readings[recording].track.scored & counted
-        deviation = self.deviation_rad(self.space.values(x), recording)[scored]
-        return math.sqrt(float(np.mean(deviation**2))) if len(deviation) else math.nan
+        deviation = self.deviation_rad(self.space.values(x), recording)
+        return scored_rms_rad(self.readings[recording].track, deviation, begin, end)
 
     def errors(self, x: Vector, recording: int) -> Iterator[tuple[NDArray[np.bool_], Vector]]:
         """Run one point over one recording: scored samples, and the error, shape ``(1, N)``."""

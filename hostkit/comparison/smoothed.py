@@ -1,10 +1,7 @@
 """hostkit's smoother in a comparison, beside the offline peers."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import fields
-
-import numpy as np
 
 from hostkit.comparison.row import Row
 from hostkit.errors import RecordingError
@@ -13,7 +10,7 @@ from hostkit.recordings import Recording
 from hostkit.records import Parameter
 from hostkit.smoothing import SmootherSettings, smooth
 from hostkit.tuning.evaluation import Quantity
-from hostkit.tuning.track import track_of
+from hostkit.tuning.track import scored_rms_rad, track_of
 
 UNITS = {
     "rad_s_rthz": "rad/s/rtHz",
@@ -63,8 +60,7 @@ def _rms_rad(
 ) -> float:
     track = track_of(recording)
     found = smooth(track.rate_rad_s, track.force_m_s2, 1.0 / recording.rate_hz, settings)
-    deviation = track.deviation_rad(found.up, quantity, mounting)[track.scored]
-    return math.sqrt(float(np.mean(deviation**2)))
+    return scored_rms_rad(track, track.deviation_rad(found.up, quantity, mounting), 0, None)
 
 
 def _unit(name: str) -> str:

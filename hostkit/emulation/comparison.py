@@ -185,20 +185,15 @@ def compare_with_faults(
     frames, trace = heard
     sent = Counts(accel=trace.accel_count, gyro=trace.gyro_count)
     elapsed = np.diff(trace.time_us, prepend=0) * 1e-6 * design.rate_hz
-    row, spoilt = rows_of(
-        sent,
-        counts,
-        np.ceil(elapsed).astype(np.int64),
-        spoilt_axes=int(any(fault.spoils_an_axis for fault in faults)),
-    )
+    spoilt_axes = int(any(fault.spoils_an_axis for fault in faults))
+    row, spoilt = rows_of(sent, counts, np.ceil(elapsed).astype(np.int64), spoilt_axes=spoilt_axes)
     repeated = repeats(sent) & (row < 0)
     wanted, exact = answers_of_models(design, sent, trace.restarted)
     residual = _residual_rad(trace.state_raw, exact)
     wrong = _state_wrong(trace.state_raw, wanted, exact, tolerance_rad)
     wrong |= (row < 0) & ~repeated
-    axes = exact.shape[1]
-    places = trace.sequence, trace.sequence
-    alone = 0 if tolerance_rad else _mark_told(trace.told, wanted[:, axes:], places, wrong)
+    hidden, places = wanted[:, exact.shape[1] :], (trace.sequence, trace.sequence)
+    alone = 0 if tolerance_rad else _mark_told(trace.told, hidden, places, wrong)
     return EmulationResult(
         target=target.name,
         samples=len(trace),
@@ -221,9 +216,14 @@ def compare_with_faults(
             texts=said(frames),
             repeated=int(repeated.sum()),
             spoilt=int(spoilt.sum()),
-            recovered=bool(len(row) and row[-1] == len(counts) - 1 and is_active(frames)),
+            recovered=_recovered(frames, row, len(counts)),
         ),
     )
+
+
+def _recovered(frames: list[Frame], row: IntArray, samples: int) -> bool:
+    """Return whether the last sample came and the device says that it is active."""
+    return bool(len(row) and row[-1] == samples - 1 and is_active(frames))
 
 
 def _residual_rad(state_raw: IntArray, exact: Vector) -> Vector:
@@ -247,7 +247,7 @@ def _state_wrong(
     They may be the angles only.
     """
     if tolerance_rad is not None:
-        return np.asarray(_apart_rad(state_raw, exact) > tolerance_rad)
+        return np.asarray(~(_apart_rad(state_raw, exact) <= tolerance_rad))  # NaN is wrong
     return np.asarray((state_raw != wanted[:, : state_raw.shape[1]]).any(axis=1))
 
 

@@ -22,6 +22,8 @@ class CoreContext:
         Its entity, and the package that has its settings.
     pipelined
         Whether the entity has the generic ``PIPELINED``.
+    serves_many
+        Whether it can have more than one channel.
     hidden_ports, told_ports
         Ports of hidden words, and those of them that a sample's message tells.
     tells_state
@@ -39,6 +41,7 @@ class CoreContext:
     name: str
     package: str
     pipelined: bool
+    serves_many: bool
     hidden_ports: tuple[HiddenPort, ...]
     told_ports: tuple[HiddenPort, ...]
     tells_state: bool
@@ -95,6 +98,7 @@ def core_context(spec: FixedPointSpec, options: FpgaOptions) -> CoreContext:
         name=f"hk_{spec.filter}",
         package=f"hk_{spec.filter}_pkg",
         pipelined=filter_.core.pipelined,
+        serves_many=most > 1,
         hidden_ports=facts.hidden_ports,
         told_ports=tuple(port for port in facts.hidden_ports if port.word is not None),
         tells_state=spec.tells_state,

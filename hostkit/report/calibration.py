@@ -46,8 +46,8 @@ def write_calibration_report(
 def _facts(calibration: Calibration) -> tuple[Fact, ...]:
     accel, gyro, temperature = calibration.accel, calibration.gyro, calibration.temperature
     facts = [
-        Fact(label="poses", value=str(np.count_nonzero(accel.used))),
-        Fact(label="turns", value=str(np.count_nonzero(gyro.used))),
+        Fact(label="poses", value=f"{np.count_nonzero(accel.used)} of {len(accel.used)}"),
+        Fact(label="turns", value=f"{np.count_nonzero(gyro.used)} of {len(gyro.used)}"),
     ]
     if accel.determined:
         worth = tilt_worth(accel, calibration.gravity_m_s2)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.records import Objective
-from hostkit.tuning.task import Search, SearchPlan, Space, Task
+from hostkit.tuning.task import Search, SearchPlan, Space, Task, whole_cost
 
 Vector = NDArray[np.float64]
 
@@ -100,9 +100,7 @@ class ArchivedTask:
         """Return the cost of points, rad, and remember them."""
         sums = self.task.block_sums(points, self.blocks)
         self._kept.append((points.copy(), sums))
-        counts = self.block_counts(1)[:, :, 0, None]
-        cost = self.metric(sums.sum(axis=2), counts).mean(axis=(0, 1))
-        return np.asarray(cost * self.preference(points))
+        return whole_cost(self, sums.sum(axis=2), points)
 
     def quick_search(self, plan: SearchPlan) -> Search | None:
         """Return none: what is searched elsewhere cannot be remembered."""

@@ -32,6 +32,13 @@ class SearchPlan:
         return self.restarts * self.particles * (self.iterations + 1)
 
 
+def mean_error(objective: Objective, sums: Vector, counts: Vector) -> Vector:
+    """Return the RMSE or MAE of sums of squares or magnitudes; NaN where nothing was counted."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        mean = sums / counts
+        return np.asarray(np.sqrt(mean) if objective == "rmse" else mean)
+
+
 class Space(Protocol):
     """The box of a search."""
 
@@ -49,6 +56,20 @@ class Space(Protocol):
 
     def design_parameters(self, x: Vector) -> tuple[Parameter, ...]:
         """Return a point, shape ``(D,)``, as the parameters of a design."""
+
+
+def whole_cost(task: "Task", sums: Vector, points: Vector) -> Vector:
+    """Return the cost of points: mean error of recordings and quantities, times preference.
+
+    Parameters
+    ----------
+    sums
+        Sums over whole recordings, shape ``(R, Q, P)``.
+    points
+        Shape ``(P, D)``.
+    """
+    error = task.metric(sums, task.block_counts(1)[:, :, 0, None])
+    return np.asarray(error.mean(axis=(0, 1)) * task.preference(points))
 
 
 class Task(Protocol):

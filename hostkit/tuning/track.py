@@ -1,6 +1,8 @@
 """A recording as filters of three dimensions are scored on it."""
 
+import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,7 @@ from hostkit.mounting import Mounting
 from hostkit.recordings import Recording
 from hostkit.records import read_only
 from hostkit.tuning.evaluation import Quantity
+from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.reference import reference_up
 
 Vector = NDArray[np.float64]
@@ -49,6 +52,21 @@ class Track:
             return inclination_rad(up, self.reference)
         angle = roll_from_up if quantity == "roll" else pitch_from_up
         return wrap_rad(angle(to_body(mounting, up)) - angle(to_body(mounting, self.reference)))
+
+
+def scored_in_blocks(tracks: tuple[Track, ...], blocks: int) -> Vector:
+    """Return how many samples are scored in each block, shape ``(R, 1, blocks)``."""
+    counts = [
+        [int(track.scored[a:b].sum()) for a, b in pairwise(edges(len(track), blocks))]
+        for track in tracks
+    ]
+    return np.array(counts, dtype=np.float64)[:, np.newaxis]
+
+
+def scored_rms_rad(track: Track, deviation_rad: Vector, begin: int, end: int | None) -> float:
+    """Return the RMSE of the scored samples of a part; NaN where there are none."""
+    scored = deviation_rad[begin:end][track.scored[begin:end]]
+    return math.sqrt(float(np.mean(scored**2))) if len(scored) else math.nan
 
 
 def track_of(recording: Recording) -> Track:

@@ -100,7 +100,8 @@ class Follower:
         if self._tolerance_rad is None:
             wrong = (self._expected(used, trace) != trace.state_raw).any(axis=1)
         else:
-            wrong = apart_rad(self.device_rad(trace), exact) > self._tolerance_rad
+            away = apart_rad(self.device_rad(trace), exact)
+            wrong = ~(away <= self._tolerance_rad)  # NaN is wrong
         self._state = trace.state_raw[-1:]
         confirmed = int(judged.sum())
         return Steps(exact=exact, judged=judged, wrong=wrong & judged, confirmed=confirmed)

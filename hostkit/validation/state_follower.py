@@ -165,7 +165,7 @@ class StateFollower:
         steps.judged[which] = True
         if self._tolerance_rad is not None:
             away = apart_rad(self.device_rad(trace)[which], exact[:, : self._axes])
-            steps.wrong[which] = away > self._tolerance_rad
+            steps.wrong[which] = ~(away <= self._tolerance_rad)  # NaN is wrong
             return [None] * len(exact)
         accel, gyro = trace.accel_count[which], trace.gyro_count[which]
         states = self._filter.run_integer(used.spec, accel, gyro, self._state)

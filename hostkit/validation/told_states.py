@@ -12,6 +12,9 @@ AHEAD = 64
 MOST_DUE = 8
 """States that wait for their sample; a device tells one now and then, a hostile one any number."""
 
+MOST_LATE = 4
+"""States of samples that were passed, of those that come at once: each may cost many steps."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SortedOut:
@@ -20,7 +23,7 @@ class SortedOut:
     Attributes
     ----------
     late
-        Those of samples that were passed lately.
+        Those of samples that were passed lately, the last few.
     wrong
         How many are of no sample at all.
     """
@@ -77,7 +80,7 @@ class ToldStates:
                 wrong += self._keep_or_count(state, sequence[-1])
         surplus = max(0, len(self._due) - MOST_DUE)
         self._due = self._due[surplus:]
-        return SortedOut(late=tuple(late), wrong=wrong + surplus)
+        return SortedOut(late=tuple(late[-MOST_LATE:]), wrong=wrong + surplus)
 
     def _keep_or_count(self, state: ToldState, newest: int) -> int:
         """Keep a state whose sample is just ahead; return 1 for one that can have no sample."""

@@ -279,7 +279,7 @@ def test_broken_project_file_is_one_clear_line(hostkit, text: str) -> None:
 def test_doctor_lists_every_tool(hostkit) -> None:
     document = json.loads(hostkit("doctor", "--json")[1])
     names = {tool["name"] for tool in document["tools"]}
-    assert {"gcc", "avr-gcc", "ghdl", "node", "avr8js", "clang"} <= names
+    assert {"gcc", "avr-gcc", "ghdl", "node", "avr8js", "clang", "vqf", "imufusion"} <= names
     for tool in document["tools"]:
         assert tool["found"] is (tool["version"] is not None) is (tool["hint"] is None)
 

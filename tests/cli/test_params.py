@@ -3,6 +3,7 @@
 import json
 import time
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +106,12 @@ def test_store_is_sent_once_everything_is_set(device: AnsweringDevice, capsys) -
         "results": [{"name": "FILT_TAU", "asked": 1.5, "in_use": 1.5, "error": None}],
         "stored": True,
     }
+
+
+def test_what_needs_a_design_says_the_limit_that_does_not() -> None:
+    fact = parameter_facts()["FILT_KV"]
+    assert fact.range_text() == f"at least {fact.lowest:.7g} 1/s"
+    assert replace(fact, lowest=None).range_text() == ""
 
 
 @pytest.mark.parametrize(

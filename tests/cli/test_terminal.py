@@ -184,6 +184,9 @@ def test_before_the_first_sample_nothing_is_called_failed() -> None:
     assert "no samples yet" in text
     assert "fail" not in text
     assert "no samples yet" in plain(early)[-1]
+    unjudged = replace(SNAPSHOT, report=replace(report, samples=40))
+    assert "no step checked yet" in plain(unjudged)[-1]
+    assert "fail" in drawn(replace(unjudged, ended=True), batch=None)
 
 
 def test_a_device_cannot_speak_to_the_terminal() -> None:

@@ -11,6 +11,7 @@ from hostkit.comparison import Cost
 from hostkit.recordings import save
 
 COSTS = (Cost(name="vqf-online", title="VQF", timed="C++", ns_per_sample=250.0),)
+QUICK = ("--iterations", "2", "--particles", "4", "--resamples", "0", "--no-held-out")
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
@@ -41,6 +42,21 @@ def test_document_is_the_documented_schema(recording, capsys, monkeypatch):
     tuned = [f for f in document["filters"] if f["settings"] == "tuned"]
     assert [f["name"] for f in tuned] == ["complementary", "observer"]
     assert tuned[1]["held_out"]["rmse_deg"] < tuned[0]["held_out"]["rmse_deg"]
+
+
+def test_a_design_is_compared_as_it_is(recording, capsys, monkeypatch):
+    assert run(["tune", recording, "--filter", "observer", "-o", "own.json", *QUICK]) == 0
+    design = ["compare", recording, "--design", "own.json", "--peers", "none", "--no-tune"]
+    assert run([*design, "--axes", "roll", "--no-cost"]) == 2
+    assert "--axes roll: the design has both" in capsys.readouterr().err
+    both = tuple(
+        Cost(name="observer", title="observer", timed="C", arithmetic=arithmetic, ns_per_sample=ns)
+        for arithmetic, ns in (("float", 35.0), ("fixed", 67.0))
+    )
+    monkeypatch.setattr(compare_module, "costs", lambda recording, options: both)
+    assert run(design) == 0
+    row = next(x for x in capsys.readouterr().out.splitlines() if " design " in x)
+    assert row.split()[-1] == "67"
 
 
 def test_table_and_report(recording, capsys):

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flights import SENSOR
+from recorded import SENSOR
 
 from hostkit.comparison import CompareOptions, chosen_peers, compare, comparison
 from hostkit.comparison.calibration import correction_of, readings_of

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from flights import SENSOR, flight
+from flights import flight
+from recorded import SENSOR
 
 from hostkit.comparison import PEERS, CompareOptions, costs
 from hostkit.comparison.calibration import readings_of

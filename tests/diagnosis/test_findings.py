@@ -30,6 +30,13 @@ def test_every_look_has_an_action_and_no_ok_has_one(moved: Simulate, still: Stil
             assert "\n" not in finding.line()
 
 
+def test_no_gate_is_asked_of_a_motion_for_the_observer(moved: Simulate) -> None:
+    found = {f.topic: f for f in findings(diagnose(moved("free", 30.0)))}
+    assert "--filter observer" in found["motion"].action
+    assert "up to 0.1" in found["force"].sentence
+    assert found["force"].action == ""
+
+
 @pytest.mark.parametrize(("bias_deg_s", "level"), [(0.9, "ok"), (-1.1, "look")])
 def test_bias(moved: Simulate, bias_deg_s: float, level: str) -> None:
     errors = replace(SensorErrors.none(), gyro_bias_rad_s=(0.0, bias_deg_s * RAD_PER_DEG, 0.0))

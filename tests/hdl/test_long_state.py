@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from cocotb_run import run_bench
 from hdl_cases import count_vectors
+from recorded import swept
 
 from hostkit.design_file import digest
 from hostkit.emulation import ghdl
@@ -17,11 +18,9 @@ from hostkit.emulation.system_bench import build_system, run_system
 from hostkit.emulation.tools import require
 from hostkit.errors import EmulationError, RenderError, ToolMissingError
 from hostkit.link.frames.decoder import Decoder
-from hostkit.recordings import Recording
 from hostkit.records import FilterDesign
 from hostkit.render import FpgaOptions, render_target, write
 from hostkit.render.context import render_context
-from hostkit.simulation import SensorErrors, simulate
 from hostkit.synthesis.convert import convert
 from hostkit.synthesis.netlist import play
 from hostkit.targets import TARGETS
@@ -113,21 +112,10 @@ def test_state_frames_are_those_of_pymavlink(
     assert tests == 5
 
 
-def recorded(source: FilterDesign) -> Recording:
-    return simulate(
-        "sine-sweep",
-        duration_s=4.0,
-        rate_hz=source.rate_hz,
-        sensor=source.sensor,
-        errors=SensorErrors(),
-        rng=np.random.default_rng(8),
-    )
-
-
 def test_the_system_tells_the_state_once_a_second(tmp_path: Path, ghdl_installed: None) -> None:
     folder = built(DESIGN, tmp_path)
     build_system(folder)
-    recording = recorded(DESIGN)
+    recording = swept(DESIGN)
     result = emulate_system(folder, TARGET, DESIGN, recording, samples=45)
     assert (result.samples, result.missing, result.mismatches) == (45, 0, 0)
     assert result.states_told == 2

@@ -17,6 +17,8 @@ from observer_cases import (
 
 from hostkit.design_file import digest
 from hostkit.emulation import ghdl
+from hostkit.emulation.fpga_system import SHORTEST_US
+from hostkit.emulation.system_bench import DRAIN_US, SystemTiming
 from hostkit.emulation.tools import require
 from hostkit.errors import RenderError, ToolMissingError
 from hostkit.filters.observer import lower, parameter, run_integer
@@ -136,3 +138,11 @@ def test_it_fits_and_its_gates_equal_the_integer_model(tmp_path: Path) -> None:
 def test_it_serves_one_sensor_one_sample_at_a_time(options: FpgaOptions) -> None:
     with pytest.raises(RenderError, match=r"pipelined|channels"):
         render_target(FULL, TARGETS["spartan3adsp"], options)
+
+
+def test_the_bench_of_the_system_waits_for_the_last_sample() -> None:
+    timing = SystemTiming()
+    slowest = max(clocks(lower(varied)).latency for varied in varied_designs())
+    frames_bytes = 2 * (12 + 4 + 4 * 24)  # a state, a sample and a heartbeat are less
+    taken_us = SHORTEST_US + 1e6 * slowest / timing.clock_hz + 1e7 * frames_bytes / timing.baud
+    assert taken_us < DRAIN_US

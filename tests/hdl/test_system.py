@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cocotb_run import run_bench
 from designs import all_parameters, design
+from recorded import swept
 
 from hostkit.cli.main import run
 from hostkit.design_file import digest, save_design
@@ -19,11 +20,10 @@ from hostkit.errors import BuildError, EmulationError
 from hostkit.filters.complementary import lower, parameters, run_integer, step_integer
 from hostkit.link.frames.decoder import Decoder, Frame, trace_of
 from hostkit.link.logs.tlog import read_tlog
-from hostkit.recordings import Recording, save
+from hostkit.recordings import save
 from hostkit.records import AXES, FilterDesign
 from hostkit.render import FpgaOptions, generate, write
 from hostkit.render.registers import register_map
-from hostkit.simulation import SensorErrors, simulate
 from hostkit.targets import TARGETS
 
 RATE_HZ = 25.0
@@ -34,17 +34,6 @@ BOOT, ACTIVE, CRITICAL = 1, 4, 5
 RESTARTED, SATURATED, RETUNED = 1, 2, 4
 
 pytestmark = pytest.mark.usefixtures("ghdl_installed")
-
-
-def recorded(built: FilterDesign, duration_s: float = 4.0) -> Recording:
-    return simulate(
-        "sine-sweep",
-        duration_s=duration_s,
-        rate_hz=built.rate_hz,
-        sensor=built.sensor,
-        errors=SensorErrors(),
-        rng=np.random.default_rng(8),
-    )
 
 
 def build(built: FilterDesign, folder: Path) -> Path:
@@ -83,7 +72,7 @@ def judged(system: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     """Return a folder with a design, a recording and the frames of a run, and its exit code."""
     folder = tmp_path_factory.mktemp("judged")
     save_design(DESIGN, folder / "design.json")
-    save(recorded(DESIGN), folder / "sweep.csv")
+    save(swept(DESIGN), folder / "sweep.csv")
     command = ["emulate", str(folder / "design.json"), "--target", TARGET.name, "--system"]
     command += ["--recording", str(folder / "sweep.csv"), "--code", str(system)]
     command += ["--samples", "60", "--record", str(folder / "frames.tlog")]
@@ -138,7 +127,7 @@ def test_the_monitor_counts_a_spoilt_frame(judged: tuple[Path, int], capsys) -> 
 def test_biases_are_sent_as_hidden_state(tmp_path: Path) -> None:
     built = all_parameters(rate_hz=RATE_HZ, tilt="arcsin", mounting="-y-x-z")
     folder = build(built, tmp_path)
-    result = emulate_system(folder, TARGET, built, recorded(built), samples=10)
+    result = emulate_system(folder, TARGET, built, swept(built), samples=10)
     assert (result.samples, result.missing, result.mismatches) == (10, 0, 0)
 
 
@@ -163,7 +152,7 @@ def require_model(frames: list[Frame], table: IntArray) -> None:
 
 
 def test_a_link_that_is_too_slow_loses_whole_samples(system: Path) -> None:
-    _, table = table_of(DESIGN, recorded(DESIGN), 12)
+    _, table = table_of(DESIGN, swept(DESIGN), 12)
     timing = replace(timing_of(DESIGN), baud=200_000)
     frames = frames_of(run_system(system, table, timing, (("DRAIN_US", "6000"),)))
     sent = [message.sequence for message in samples_of(frames)]
@@ -176,7 +165,7 @@ def test_a_link_that_is_too_slow_loses_whole_samples(system: Path) -> None:
 
 
 def with_fault(system: Path, text: str) -> EmulationResult:
-    recording = recorded(DESIGN)
+    recording = swept(DESIGN)
     faults = (parse_fault(text),)
     return emulate_system(system, TARGET, DESIGN, recording, samples=14, faults=faults)
 
@@ -204,7 +193,7 @@ def test_the_system_recovers(
 
 
 def test_a_refused_sensor_is_critical(system: Path) -> None:
-    _, table = table_of(DESIGN, recorded(DESIGN), 2)
+    _, table = table_of(DESIGN, swept(DESIGN), 2)
     frames = frames_of(play(system, table, IDENTITY=0x12, LIMIT_US=20_000))
     assert samples_of(frames) == []
     assert states_of(frames)[:2] == [BOOT, CRITICAL]
@@ -220,7 +209,7 @@ def test_a_fault_the_model_lacks_is_refused(system: Path) -> None:
 
 def test_settings_change_over_axi(tmp_path: Path) -> None:
     write(generate(DESIGN, TARGET, FpgaOptions(bus="axi4lite")), tmp_path / "code")
-    _, table = table_of(DESIGN, recorded(DESIGN), 40)
+    _, table = table_of(DESIGN, swept(DESIGN), 40)
     counts = tmp_path / "counts.txt"
     lines = (" ".join(f"{word:04x}" for word in row) for row in table & 0xFFFF)
     counts.write_text("".join(line + "\n" for line in lines), encoding="ascii")
@@ -294,7 +283,7 @@ def test_a_folder_without_a_system_is_refused(tmp_path: Path) -> None:
 
 
 def test_frames_of_a_run_become_a_tlog(tmp_path: Path, system: Path) -> None:
-    _, table = table_of(DESIGN, recorded(DESIGN), 2)
+    _, table = table_of(DESIGN, swept(DESIGN), 2)
     heard = play(system, table)
     write_tlog(heard, tmp_path / "run.tlog")
     assert b"".join(read_tlog(tmp_path / "run.tlog")) == heard.stream
@@ -306,7 +295,7 @@ def test_frames_of_a_run_become_a_tlog(tmp_path: Path, system: Path) -> None:
 )
 def test_options_that_do_not_fit_are_refused(tmp_path: Path, capsys, more, said) -> None:
     save_design(DESIGN, tmp_path / "design.json")
-    save(recorded(DESIGN), tmp_path / "sweep.csv")
+    save(swept(DESIGN), tmp_path / "sweep.csv")
     command = ["emulate", str(tmp_path / "design.json"), "--target", "host"]
     assert run([*command, "--recording", str(tmp_path / "sweep.csv"), *more]) == 2
     assert said in capsys.readouterr().err

@@ -6,7 +6,9 @@ from judging import judge
 from slow_filter import SlowDevice, is_state, register, slow_design
 
 from hostkit.link.frames.decoder import Decoder, trace_of
+from hostkit.trace import ToldState
 from hostkit.validation import Thresholds, Validator
+from hostkit.validation.told_states import ToldStates
 
 SAMPLES = 400
 BATCHES = pytest.mark.parametrize("batch", [1, 7, 37, 1000])
@@ -269,6 +271,13 @@ def test_a_filter_in_float_is_held_against_the_float_model_only(first: int) -> N
         report = verdict(frames[begin:], batch=batch, tolerance_rad=1e-7)
         assert (report.verdict, report.mismatches) == ("pass", 0)
         assert report.checked == (400 if not first else 299)
+
+
+def test_any_number_of_late_states_costs_no_more_than_a_few() -> None:
+    told = tuple(ToldState(sequence=k % 40, words_raw=(k,)) for k in range(1000))
+    found = ToldStates().sort(told, [60, 61], range(40), anew=False)
+    assert [state.words_raw[0] for state in found.late] == [996, 997, 998, 999]
+    assert found.wrong == 0
 
 
 @settings(max_examples=40, deadline=None)

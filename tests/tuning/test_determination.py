@@ -51,6 +51,15 @@ def test_parameters_that_stand_for_each_other_are_named():
     assert not any("stand for" in r for r in said(moving, np.zeros(2)))
 
 
+def test_what_is_not_determined_is_not_named_again_for_going_along_with_others():
+    tau = (FixedParameter(name="tau", value=0.3),)
+    still = problem(recorded("rest", duration_s=60.0), free=("gyro_bias", "tilt_offset"), fixed=tau)
+    x = np.zeros(2)
+    found = remarks(still, x, 1e3, profiles(still, x))
+    assert len([r for r in found if r.startswith("the recordings do not determine")]) == 2
+    assert not any("stand for" in r for r in found)
+
+
 @pytest.mark.parametrize("free", [("tau",), ("tau", "gate", "integral_gain")])
 def test_remarks_reach_the_result(free):
     options = TuningOptions(

@@ -6,10 +6,10 @@ from hostkit.filters.observer.spec import ObserverSpec
 from hostkit.records import FilterDesign
 
 TITLES = (
-    "correction per sample and acceleration",
-    "share of the velocity that goes in a sample",
-    "bias per correction",
-    "half-angle that the bias of x turns in a sample, at the start",
+    "correction per sample and acceleration, kt / (2 rate^2)",
+    "share of the velocity that goes in a sample, kv / rate",
+    "bias per correction, kb / rate",
+    "half-angle that the bias of x turns in a sample, bias (1 + scale) / (2 rate), at the start",
     "the same of y",
     "the same of z",
 )

@@ -21,7 +21,7 @@ from hostkit.tuning.kernel import (
     kernel,
     scored_mask,
 )
-from hostkit.tuning.task import Search, SearchPlan
+from hostkit.tuning.task import Search, SearchPlan, mean_error
 
 Vector = NDArray[np.float64]
 
@@ -95,9 +95,7 @@ class Problem:
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE or MAE of sums over so many samples."""
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            mean = sums / counts
-            return np.asarray(np.sqrt(mean) if self.objective == "rmse" else mean)
+        return mean_error(self.objective, sums, counts)
 
     def block_sums(self, points: Vector, blocks: int) -> Vector:
         """Return what the kernel sums up, block by block.

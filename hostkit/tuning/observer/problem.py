@@ -1,6 +1,5 @@
 """The cost of many observers over many recordings."""
 
-import math
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -17,8 +16,8 @@ from hostkit.tuning.evaluation import Quantity
 from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.observer.kernel import Kernel, Terms, candidate_table
 from hostkit.tuning.observer.space import ObserverSpace
-from hostkit.tuning.task import Search, SearchPlan
-from hostkit.tuning.track import Track
+from hostkit.tuning.task import Search, SearchPlan, mean_error, whole_cost
+from hostkit.tuning.track import Track, scored_in_blocks, scored_rms_rad
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -86,9 +85,7 @@ class ObserverProblem:
         numpy.ndarray
             Costs, shape ``(P,)``.
         """
-        sums, counts = self.block_sums(points, 1), self.block_counts(1)
-        cost = self.metric(sums[:, :, 0], counts[:, :, 0, None]).mean(axis=(0, 1))
-        return np.asarray(cost * self.preference(points))
+        return whole_cost(self, self.block_sums(points, 1)[:, :, 0], points)
 
     def quick_search(self, plan: SearchPlan) -> Search | None:
         """Return none: points are run one beside the other, and that is all."""
@@ -96,9 +93,7 @@ class ObserverProblem:
 
     def metric(self, sums: Vector, counts: Vector) -> Vector:
         """Return the RMSE or MAE of sums over so many samples."""
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            mean = sums / counts
-            return np.asarray(np.sqrt(mean) if self.objective == "rmse" else mean)
+        return mean_error(self.objective, sums, counts)
 
     def block_sums(self, points: Vector, blocks: int) -> Vector:
         """Return sums of squares or magnitudes in blocks, shape ``(R, 1, blocks, P)``."""
@@ -115,11 +110,7 @@ class ObserverProblem:
 
     def block_counts(self, blocks: int) -> Vector:
         """Return how many samples are scored in each block, shape ``(R, 1, blocks)``."""
-        counts = [
-            [int(track.scored[a:b].sum()) for a, b in pairwise(edges(len(track), blocks))]
-            for track in self.tracks
-        ]
-        return np.array(counts, dtype=np.float64)[:, np.newaxis]
+        return scored_in_blocks(self.tracks, blocks)
 
     def rms_rad(self, x: Vector, recording: int, begin: int = 0, end: int | None = None) -> float:
         """Return the RMSE of one point on one recording.
@@ -130,10 +121,7 @@ class ObserverProblem:
             Samples that count; the filter runs on through the others.
         """
         track = self.tracks[recording]
-        counted = np.zeros(len(track), dtype=np.bool_)
-        counted[begin:end] = True
-        deviation = self._deviation(x, track)[track.scored & counted]
-        return math.sqrt(float(np.mean(deviation**2))) if len(deviation) else math.nan
+        return scored_rms_rad(track, self._deviation(x, track), begin, end)
 
     def errors(self, x: Vector, recording: int) -> Iterator[tuple[NDArray[np.bool_], Vector]]:
         """Run one point over one recording: scored samples, and the error, shape ``(1, N)``."""
