@@ -15,12 +15,10 @@ from hostkit.filters import FILTERS
 from hostkit.recordings import Recording
 from hostkit.records import AXES, FilterDesign, Parameter
 from hostkit.tuning import TUNERS, FixedParameter, TuningOptions, evaluate, sensor_config
-from hostkit.tuning.dimension import Dimension
 from hostkit.tuning.evaluation import Evaluation
 from hostkit.tuning.reference import reference_rad
-from hostkit.tuning.task import Space
+from hostkit.tuning.start import default_point
 from hostkit.tuning.tune import tuning_task
-from hostkit.tuning.tuner import Tuner
 from hostkit.units import STANDARD_GRAVITY_M_S2
 
 Vector = NDArray[np.float64]
@@ -104,7 +102,7 @@ def tuned_row(
         free = tuple(name for name in tuner.free if name != SCALE)
         options = replace(options, free=free)
     task = tuning_task(recordings, options, folder)
-    start = _start(task.space, tuner) if task.is_dear else None
+    start = default_point(task.space, tuner) if task.is_dear else None
     found = tuned(task, start, options)
     parameters = task.space.design_parameters(found.x)
     return replace(
@@ -113,20 +111,6 @@ def tuned_row(
         held_out=found.held_out,
         evaluations=found.evaluations,
     )
-
-
-def _start(space: Space, tuner: Tuner) -> Vector:
-    """Return the default as a point of the search, shape ``(D,)``; what it has not is lowest."""
-    values = {p.name: p.value for p in tuner.default()}
-
-    def coordinate(dimension: Dimension) -> float:
-        value = values.get(tuner.key(dimension.name, dimension.axis), 0.0)
-        if dimension.is_log:
-            return math.log(value) if value > 0.0 else dimension.lower
-        return value
-
-    points = np.array([coordinate(dimension) for dimension in space.dimensions])
-    return np.asarray(np.clip(points, space.lower, space.upper))
 
 
 def lead_of(design: FilterDesign) -> float:

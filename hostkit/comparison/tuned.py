@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hostkit.tuning import HeldOut, TuningOptions
-from hostkit.tuning.archive import ArchivedTask, archived
-from hostkit.tuning.retuning import LEAST_UNITS, cross_validate, retune
+from hostkit.tuning.archive import archived
+from hostkit.tuning.retuning import LEAST_UNITS, cross_validate
 from hostkit.tuning.search import choose_optimiser, search
+from hostkit.tuning.start import search_from
 from hostkit.tuning.task import Task
 
 Vector = NDArray[np.float64]
@@ -50,18 +51,16 @@ def tuned(task: Task, start: Vector | None, options: TuningOptions) -> Tuned:
     HostkitError
         If the cost is finite nowhere.
     """
-    problem = task
-    if start is not None:
-        problem = archived(task, LEAST_UNITS)
-        problem.cost(start[np.newaxis])
     optimiser = choose_optimiser(options.optimiser, len(task.space.dimensions))
-    swarm = search(problem, options, optimiser)
-    x, recordings = swarm.x, len(task.lengths)
-    if isinstance(problem, ArchivedTask):
-        x = retune(problem, np.ones((1, recordings, problem.blocks)), options)[0]
+    recordings = len(task.lengths)
+    problem = task if start is None else archived(task, LEAST_UNITS)
+    if start is None:
+        found = search(problem, options, optimiser)
+    else:
+        found = search_from(problem, options, optimiser, start)
     return Tuned(
-        x=x,
-        each_rad=tuple(problem.rms_rad(x, i) for i in range(recordings)),
+        x=found.x,
+        each_rad=tuple(problem.rms_rad(found.x, i) for i in range(recordings)),
         held_out=cross_validate(problem, options) if options.held_out else None,
-        evaluations=swarm.evaluations + (start is not None),
+        evaluations=found.evaluations,
     )

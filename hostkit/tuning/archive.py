@@ -3,7 +3,7 @@
 A problem whose points are dear is not searched anew for each fold of a cross-validation and each
 draw of a bootstrap: the sums of every point that the search visited are kept block by block, and
 a tuning with other weights takes the best of those points. The search itself saw all recordings, so
-a held-out error is a little smaller than that of a search of its own for every fold.
+for held-out errors each fold searches on from there (:mod:`hostkit.tuning.refinement`).
 """
 
 from collections.abc import Iterator

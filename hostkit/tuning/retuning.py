@@ -12,7 +12,9 @@ from hostkit.optimisers import OPTIMISERS
 from hostkit.tuning.archive import ArchivedTask
 from hostkit.tuning.kernel.arrays import edges
 from hostkit.tuning.options import TuningOptions
+from hostkit.tuning.refinement import refined
 from hostkit.tuning.task import Task
+from hostkit.tuning.weighting import used, weighted_cost
 
 Vector = NDArray[np.float64]
 
@@ -65,11 +67,11 @@ def cross_validate(problem: Task, options: TuningOptions) -> HeldOut:
         folds = min(recordings, MOST_FOLDS)
         fold_of = np.arange(recordings) % folds
         weights = (fold_of != np.arange(folds)[:, None]).astype(np.float64)[:, :, None]
-        x = retune(problem, weights, options)
+        x = refined(problem, weights, retune(problem, weights, options), options)
         each = [problem.rms_rad(x[fold_of[r]], r) for r in range(recordings)]
         return _held_out("recordings", folds, each, np.ones(recordings), power=1)
     weights = 1.0 - np.eye(SINGLE_FOLDS)[:, None, :]
-    x = retune(problem, weights, options)
+    x = refined(problem, weights, retune(problem, weights, options), options)
     cuts = edges(problem.lengths[0], SINGLE_FOLDS)
     each = [problem.rms_rad(x[i], 0, cuts[i], cuts[i + 1]) for i in range(SINGLE_FOLDS)]
     counts = problem.block_counts(SINGLE_FOLDS)[0].sum(axis=0)
@@ -143,7 +145,7 @@ def retune(problem: Task, weights: Vector, options: TuningOptions) -> Vector:
     alone = problem.with_jobs(1)
 
     def swarm(one: Vector) -> Vector:
-        if not _used(counts, one).any():
+        if not used(counts, one).any():
             return np.full(len(space.dimensions), np.nan)
 
         def cost(points: Vector) -> Vector:
@@ -178,37 +180,6 @@ def _best_visited(problem: ArchivedTask, weights: Vector, counts: Vector) -> Vec
         if np.isfinite(cost).any():
             found[i] = visited.points[int(np.nanargmin(cost))]
     return found
-
-
-def weighted_cost(problem: Task, sums: Vector, counts: Vector, weights: Vector) -> Vector:
-    """Return the cost of points where blocks have weights.
-
-    Parameters
-    ----------
-    sums, counts
-        From `Task.block_sums` and `Task.block_counts`: shapes ``(R, A, B, P)`` and
-        ``(R, A, B)``.
-    weights
-        Shape ``(R, B)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Mean over recordings, each weighing as much as its blocks on average, shape ``(P,)``.
-    """
-    total = np.einsum("rabp,rb->rap", sums, weights)
-    scored = np.einsum("rab,rb->ra", counts, weights)
-    used = _used(counts, weights)
-    if not used.any():
-        return np.full(sums.shape[-1], np.nan)
-    share = weights.mean(axis=1)[used]
-    error = problem.metric(total[used], scored[used][:, :, None]).mean(axis=1)
-    return np.asarray(share @ error / share.sum())
-
-
-def _used(counts: Vector, weights: Vector) -> NDArray[np.bool_]:
-    """Return which recordings have scored samples with weight on every axis, shape ``(R,)``."""
-    return np.asarray((np.einsum("rab,rb->ra", counts, weights) > 0.0).all(axis=1))
 
 
 def _between(grid: Vector, cost: Vector) -> float:

@@ -90,7 +90,7 @@ def test_bounds_reversed_and_unknown_names_are_wrong_use(tmp_path, refused):
         path, "--free", "tau,magic", code=2
     )
     assert "gate is one for all axes" in refused(path, "--fix", "gate-roll=0.1", code=2)
-    assert "gyro_bias = 0.523599" in refused(path, "--fix", "gyro-bias=30")
+    assert "gyro-bias = 30 deg/s" in refused(path, "--fix", "gyro-bias=30")
     assert "grid-brent takes one parameter, 2 are free" in refused(
         path, "--free", "tau,gate", "--optimiser", "grid-brent"
     )

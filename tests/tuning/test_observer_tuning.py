@@ -11,13 +11,14 @@ from hostkit.filters.observer.parameters import BY_NAME
 from hostkit.mounting import Mounting
 from hostkit.records import FilterDesign
 from hostkit.simulation import SensorErrors
-from hostkit.tuning import FixedParameter, SearchRange, TuningOptions
+from hostkit.tuning import FixedParameter, SearchRange, TuningOptions, tune
 from hostkit.tuning.archive import archived
 from hostkit.tuning.kernel.library import library
-from hostkit.tuning.observer import RANGES, SOURCES, observer_problem
+from hostkit.tuning.observer import OBSERVER_TUNER, RANGES, SOURCES, observer_problem
 from hostkit.tuning.observer.space import observer_space
 from hostkit.tuning.retuning import cross_validate
 from hostkit.tuning.search import search
+from hostkit.tuning.start import default_point, search_from
 
 EVERY = tuple(r.name for r in RANGES)
 
@@ -171,3 +172,47 @@ def test_a_scale_that_no_motion_shows_stays_near_nothing() -> None:
     p = archived(problem(still, free=("gyro_scale",)), 16)
     found = search(p, TuningOptions(filter="observer", iterations=40), "qpso")
     assert np.abs(found.x).max() < 0.02
+
+
+def test_a_search_too_short_to_find_anything_leaves_the_default() -> None:
+    recordings = tuple(recorded("random", seed=s, duration_s=6.0) for s in (1, 2))
+    options = TuningOptions(filter="observer", particles=2, iterations=1, seed=2)
+    p = archived(problem(*recordings), 16)
+    start = default_point(p.space, OBSERVER_TUNER)
+    expected = p.cost(start[np.newaxis])[0]
+    assert expected < search(p, options, "qpso").cost
+    found = search_from(p, options, "qpso", start)
+    np.testing.assert_array_equal(found.x, start)
+    assert (found.cost, found.history[-1], found.evaluations) == (expected, expected, 5)
+
+
+def test_where_tuning_brings_nothing_tune_says_so() -> None:
+    recordings = tuple(recorded("random", seed=s, duration_s=6.0) for s in (1, 2))
+    short = TuningOptions(
+        filter="observer", sensor=SENSOR, particles=2, iterations=1, seed=2, resamples=0
+    )
+    assert any("the defaults, 1.1" in r for r in tune(recordings, short).remarks)
+    tuned = tune(recordings, replace(short, particles=16, iterations=30))
+    assert tuned.held_out.rms_rad < np.radians(1.1)
+    assert not any("the defaults" in r for r in tuned.remarks)
+
+
+def test_the_default_is_a_point_of_every_search() -> None:
+    free = ("kt", "start", "lead")
+    narrow = SearchRange(name="kt", lowest=0.1, highest=1.0, is_log=True)
+    p = problem(recorded(duration_s=2.0), free=free, ranges=(narrow,))
+    point = default_point(p.space, OBSERVER_TUNER)
+    np.testing.assert_allclose(point, [np.log(0.1), np.log(BY_NAME["start"].default), 0.0])
+    bare = default_point(p.space, replace(OBSERVER_TUNER, default=tuple))
+    np.testing.assert_array_equal(bare, [*p.space.lower[:2], 0.0])
+
+
+def test_thresholds_of_rest_stay_near_their_defaults_where_nothing_moves_them() -> None:
+    swinging = recorded("sine-sweep", duration_s=6.0, errors=SensorErrors())
+    p = archived(problem(swinging, free=("rest_rate", "rest_gain", "kt")), 16)
+    found = search(p, TuningOptions(filter="observer", iterations=60), "qpso")
+    defaults = np.log([BY_NAME["rest_rate"].default, BY_NAME["rest_gain"].default])
+    np.testing.assert_allclose(found.x[1:], defaults, atol=0.1)
+    usual = np.array([found.x[0], *defaults])
+    doubled = usual + np.log([1.0, 2.0, 1.0])
+    np.testing.assert_allclose(p.preference(np.array([usual, doubled])), [1.0, 1.002])

@@ -6,7 +6,8 @@ from recorded import SENSOR, problem, recorded
 
 from hostkit.simulation import SensorErrors
 from hostkit.tuning import TuningOptions, tune
-from hostkit.tuning.retuning import bootstrap, cross_validate, retune, weighted_cost
+from hostkit.tuning.retuning import bootstrap, cross_validate, retune
+from hostkit.tuning.weighting import weighted_cost
 
 OPTIONS = TuningOptions(axes="roll", sensor=SENSOR)
 RECORDINGS = tuple(

@@ -26,7 +26,7 @@ from hostkit.tuning.dimension import (
     check_fixed,
     check_range,
 )
-from hostkit.tuning.sensor_terms import SENSOR_RANGES, preference
+from hostkit.tuning.sensor_terms import HOLD, SENSOR_RANGES, preference
 from hostkit.tuning.tuner import Tunable
 
 Vector = NDArray[np.float64]
@@ -43,6 +43,10 @@ RANGES: Final[tuple[SearchRange, ...]] = (
 )
 """Where tuned values on public recordings lie, with room around them; rates of decay and gains are
 searched as logarithms."""
+
+REST_NAMES: Final = ("rest_rate", "rest_force", "rest_gain")
+REST_USUAL: Final = math.log(2.0)
+"""How far what rest is told by is from its default in ordinary sensors: a factor of two."""
 
 RANGE_BY_NAME: Final[dict[FreeName, SearchRange]] = {r.name: r for r in RANGES}
 
@@ -67,9 +71,15 @@ class ObserverSpace:
     def preference(self, points: Vector) -> Vector:
         """Return the factors that hold points of shape ``(P, D)`` to what is usual, ``(P,)``.
 
-        The scale of an axis that the recordings do not turn about would be anything else.
+        The scale of an axis that the recordings do not turn about would be anything else, and a
+        threshold of rest would be where it happens to suit one moment of them.
         """
-        return preference(self.dimensions, points)
+        factor = preference(self.dimensions, points)
+        for i, dimension in enumerate(self.dimensions):
+            if dimension.name in REST_NAMES:
+                away = points[:, i] - math.log(BY_NAME[dimension.name].default)
+                factor += HOLD * (away / REST_USUAL) ** 2
+        return factor
 
     def values(self, points: Vector) -> dict[str, Vector]:
         """Return every parameter of points of shape ``(P, D)`` by its name in a design."""
