@@ -18,6 +18,9 @@ CHUNK_BYTES = 4096
 SLOW_READER_S = 1.0
 """How long the port waits for a reader that does not keep up; then bytes are lost, as on a wire."""
 
+REFRESHES = 2
+"""How often the port is emptied after a reader: what a busy kernel has yet to deliver escapes once."""
+
 Serve = Callable[[Send, Stop, Receive], None]
 
 
@@ -47,7 +50,7 @@ class PtyPort:
         os.set_blocking(self._master, False)
         self._poll = select.poll()
         self._poll.register(self._master, select.POLLIN)
-        self._listening = False
+        self._refreshes_due = 0
 
     def close(self) -> None:
         """Give the pseudo-terminal back."""
@@ -57,9 +60,11 @@ class PtyPort:
         """Tell whether a reader has the port open; what one that left did not read is dropped."""
         events = dict(self._poll.poll(0)).get(self._master, 0)
         there = not events & select.POLLHUP
-        if self._listening and not there:
+        if there:
+            self._refreshes_due = REFRESHES
+        elif self._refreshes_due > 0:
+            self._refreshes_due -= 1
             self._refresh()
-        self._listening = there
         return there
 
     def _refresh(self) -> None:
