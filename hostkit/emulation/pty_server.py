@@ -19,7 +19,7 @@ SLOW_READER_S = 1.0
 """How long the port waits for a reader that does not keep up; then bytes are lost, as on a wire."""
 
 REFRESHES = 2
-"""How often the port is emptied after a reader: what a busy kernel has yet to deliver escapes once."""
+"""How often the port is emptied after a reader: a busy kernel may deliver bytes after the first."""
 
 Serve = Callable[[Send, Stop, Receive], None]
 
