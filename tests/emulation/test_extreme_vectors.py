@@ -14,6 +14,9 @@ from hostkit.sensors import SENSORS
 from hostkit.sensors.counts import Counts, to_counts
 from hostkit.targets import TARGETS
 
+CORE_ROWS = 500
+"""Of a core's vectors, the first: those of tests/golden go through it whole."""
+
 
 def recording_of(design: FilterDesign, counts: np.ndarray) -> Recording:
     """A recording that the configured sensor turns into given counts, shape ``(N, 6)``."""
@@ -36,12 +39,13 @@ def test_extremes_come_back_as_the_integer_model_says(
     sample: Sample, target: str, tmp_path: Path
 ) -> None:
     require_or_skip(*TARGET_TOOLS[target])
-    recording = recording_of(sample.design, sample.counts)
+    counts = sample.counts[:CORE_ROWS] if TARGETS[target].kind == "fpga" else sample.counts
+    recording = recording_of(sample.design, counts)
     part = SENSORS[sample.design.sensor.part]
     reached: Counts = to_counts(
         part, sample.design.sensor, recording.angular_rate_rad_s, recording.specific_force_m_s2
     )
-    np.testing.assert_array_equal(np.hstack([reached.accel, reached.gyro]), sample.counts)
+    np.testing.assert_array_equal(np.hstack([reached.accel, reached.gyro]), counts)
     folder = generated(target, tmp_path, sample.design)
     build(folder, TARGETS[target])
     result = emulate(folder, TARGETS[target], sample.design, recording)
