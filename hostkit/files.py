@@ -1,7 +1,7 @@
 """Writing a file so that a reader never sees half of it."""
 
 import os
-import tempfile
+import secrets
 from pathlib import Path
 
 from hostkit.errors import HostkitError
@@ -30,13 +30,8 @@ def write_aside(path: Path, content: bytes | str) -> None:
         _write_through(path, payload)
         return
     try:
-        temporary = _write_temporary(target, payload)
+        _replace(target, payload)
     except OSError as error:
-        raise _refusal(path, error) from error
-    try:
-        temporary.replace(target)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
         raise _refusal(path, error) from error
 
 
@@ -49,20 +44,23 @@ def _write_through(path: Path, payload: bytes) -> None:
         raise _refusal(path, error) from error
 
 
-def _write_temporary(target: Path, payload: bytes) -> Path:
-    prefix = f".{target.name[:100]}."
-    handle, name = tempfile.mkstemp(prefix=prefix, suffix=".part", dir=target.parent)
-    temporary = Path(name)
+def _replace(target: Path, payload: bytes) -> None:
+    """Write and rename; the name is known before the file exists, so that none is ever left."""
+    temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(8)}.part")
     try:
-        with os.fdopen(handle, "wb") as stream:
+        with open(temporary, "xb", opener=_for_the_owner) as stream:
             stream.write(payload)
             stream.flush()
             os.fsync(stream.fileno())
         temporary.chmod(_mode_of(target))
+        temporary.replace(target)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    return temporary
+
+
+def _for_the_owner(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 def _mode_of(target: Path) -> int:

@@ -82,3 +82,16 @@ def test_a_device_is_written_to_and_stays_a_device(tmp_path: Path) -> None:
     assert Path("/dev/null").is_char_device()
     with pytest.raises(HostkitError, match="No space left"):
         write_aside(Path("/dev/full"), "too much")
+
+
+@pytest.mark.parametrize("step", ["chmod", "replace"])
+def test_an_interrupt_at_any_step_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, step, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_aside(tmp_path / "design.json", "{}")
+    assert list(tmp_path.iterdir()) == []
