@@ -15,6 +15,8 @@ from hostkit.recordings import load
 from hostkit.records import AxisChoice
 
 DATA = "HOSTKIT_DATA"
+DEFAULT_FOLDER = Path(__file__).resolve().parents[2] / "shared" / "data"
+"""Where the tests look for recordings, too."""
 FAST = ("vqf-online", "vqf-offline", "imufusion")
 SLOW = (*FAST, "mahony", "madgwick")
 """The package ahrs takes a tenth of a millisecond a sample, so it is run on short sets only."""
@@ -65,7 +67,7 @@ def tables() -> Iterator[Table]:
     Raises
     ------
     HostkitError
-        If the environment names no folder of recordings.
+        If there is no folder of recordings.
     """
     root = data_folder()
     for one in SETS:
@@ -83,15 +85,15 @@ def data_folder() -> Path:
     Raises
     ------
     HostkitError
-        If the environment does not say.
+        If there is no such folder.
     """
-    folder = os.environ.get(DATA)
-    if not folder or not Path(folder).is_dir():
+    folder = Path(os.environ.get(DATA, DEFAULT_FOLDER))
+    if not folder.is_dir():
         raise HostkitError(
-            f"{DATA} names no folder of recordings, so there is no accuracy to measure; "
-            "docs/accuracy.md says where the public ones are"
+            f"there are no recordings in {folder}, so there is no accuracy to measure; {DATA} "
+            "names their folder, and docs/accuracy.md says where the public ones are"
         )
-    return Path(folder)
+    return folder
 
 
 def _table(one: DataSet, files: list[Path], lead_s: float) -> Table:

@@ -28,7 +28,7 @@ def tables() -> Iterator[Table]:
     Raises
     ------
     HostkitError
-        If the environment names no folder of recordings.
+        If there is no folder of recordings.
     """
     root = data_folder()
     rows = []
